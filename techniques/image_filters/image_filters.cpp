@@ -82,7 +82,8 @@ class SmoothPass : public Pass {
   void smoothed(PassContext& frame, const In<Image>& samples, Out<Image>& result, const char* name,
                 bool reflects) const {
     if (!result.wanted()) return;
-    result = Image{frame.image(fmt::format("smoothed {}", name))};
+    result = Image{frame.image(fmt::format("smoothed {}", name)),
+                   result.contributes() != Contributes::ambientOcclusion};
     const float nothing = result.contributes() == Contributes::ambientOcclusion
                               ? neutralElement(Contributes::ambientOcclusion)
                               : neutralElement(Contributes::indirectDiffuse);

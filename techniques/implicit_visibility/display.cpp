@@ -95,8 +95,10 @@ class DisplayPass : public Pass {
     if (occlusion.wanted()) occlusion = showOpenness(frame, common);
     if (segments.wanted()) {
       const gpu::BufferRef ofLeaves = frame.uploaded(elements->tree->segmentOfLeaf, "segments of elements");
-      segments =
+      Image colours =
           show(frame, {common, display::segments(ofLeaves)}, Variant::ofSegments, elements->position, {});
+      colours.radiance = false;
+      segments = colours;
     }
   }
 

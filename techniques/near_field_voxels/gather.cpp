@@ -214,8 +214,8 @@ class GatherPass : public Pass {
     }
     dispatchAll(frame, program, bound, parameters, fromMap ? map->lightCount : 0, samples);
     if (arriving.wanted()) arriving = Image{light.current};
-    if (occlusion.wanted()) occlusion = Image{open.current};
-    if (fetches.wanted()) fetches = Image{counted};
+    if (occlusion.wanted()) occlusion = Image{open.current, false};
+    if (fetches.wanted()) fetches = Image{counted, false};
   }
 
   /// In as many dispatches as keep the loops within what drivers run: portions of the rays, and, where there

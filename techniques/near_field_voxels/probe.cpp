@@ -23,8 +23,8 @@ class ProbePass : public Pass {
     const gpu::TextureDescription& rays = origins->texture->description();
     const gpu::TextureDescription images{
         .format = gpu::Format::rgba32f, .width = rays.width, .height = rays.height};
-    hits = Image{frame.texture(images, "voxels that rays meet")};
-    fetches = Image{frame.texture(images, "texels that rays read")};
+    hits = Image{frame.texture(images, "voxels that rays meet"), false};
+    fetches = Image{frame.texture(images, "texels that rays read"), false};
     frame.dispatch(frame.program(probe::Variant{.bitRule = method.axis()}),
                    {method.binding(frame, *bits), probe::origins(origins->texture, gpu::Sampling::nearest),
                     probe::directions(directions->texture, gpu::Sampling::nearest),

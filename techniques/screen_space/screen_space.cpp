@@ -98,9 +98,10 @@ class SsaoPass : public ScreenPass {
 
   void run(PassContext& frame) override {
     const float reach = range ? radiusOf(frame) : std::numeric_limits<float>::max();
-    occlusion = sampled(frame, code::ssao::Variant{},
-                        code::ssao::Constants{.directions = static_cast<int>(Directions(directions))},
-                        {code::ssao::occlusion({.range = reach})}, "unoccluded share");
+    const Image open = sampled(frame, code::ssao::Variant{},
+                               code::ssao::Constants{.directions = static_cast<int>(Directions(directions))},
+                               {code::ssao::occlusion({.range = reach})}, "unoccluded share");
+    occlusion = Image{open.texture, false};
   }
 };
 

@@ -32,7 +32,7 @@ inline void makeImages(PassContext& frame, const glm::ivec2& size, Out<Image>& s
                        Out<Image>& transmittance) {
   const gpu::TextureDescription image{gpu::TextureKind::d2, gpu::Format::rgba32f, size.x, size.y, 1, 1};
   scattered = Image{frame.texture(image, "scattered radiance")};
-  transmittance = Image{frame.texture(image, "transmittance")};
+  transmittance = Image{frame.texture(image, "transmittance"), false};
 }
 
 void addMarchAsPublished(TechniqueRegistry& registry);

@@ -59,7 +59,9 @@ struct PortTraits<voxel_cone_tracing::DirectionalRadianceGrid> {
     contents.texture("finest", port.finest);
     contents.buffer("bricks", port.occupied.bricks);
     contents.buffer("count", port.occupied.count);
-    for (std::size_t face = 0; face < kFaces.size(); ++face) contents.texture(kFaces[face], port.faces[face]);
+    const int filledOfFaces = std::max(0, port.filledLevels - port.firstLevelOfFaces());
+    for (std::size_t face = 0; face < kFaces.size(); ++face)
+      contents.texture(kFaces[face], port.faces[face], {.levels = filledOfFaces});
     for (int level = 0; level < port.filledLevels; ++level) {
       const VoxelBox box = VoxelBox::of(port.grid, levelResolution(port.grid.resolution, level));
       const bool fromFinest = level < port.firstLevelOfFaces();

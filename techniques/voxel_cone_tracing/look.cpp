@@ -198,7 +198,7 @@ class LookPass : public Pass {
     const CameraView& camera = frame.snapshot().camera;
     const auto columns = static_cast<float>(camera.width), rows = static_cast<float>(camera.height);
     const glm::vec3 corner = camera.direction(0.0f, 0.0f), sides(box.voxelSize);
-    radiance = Image{frame.image("voxels")};
+    radiance = Image{frame.image("voxels"), shown.unit == kRadianceUnit};
     frame.dispatch(
         frame.program(look::kProgram, {},
                       look::Constants{.filterRule = static_cast<int>(static_cast<Filter>(filter)),

@@ -120,6 +120,22 @@ struct RadianceOctree {
     brick = brick * static_cast<std::uint32_t>(faces) + static_cast<std::uint32_t>(face);
     return tree.brickSide() * glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
   }
+  /// Of the texels of the pool: those of bricks that there are, of the levels that are filled.
+  std::vector<bool> texelsInUse() const {
+    const gpu::TextureDescription& pool = radiance->description();
+    std::vector<bool> result(static_cast<std::size_t>(pool.width) * static_cast<std::size_t>(pool.height) *
+                             static_cast<std::size_t>(pool.depth));
+    const int side = tree.brickSide();
+    for (int level = 0; level < filledLevels; ++level)
+      for (const OctreeBrickList::Brick& brick : OctreeBrickList::of(tree, level).bricks)
+        for (int face = 0; face < faces; ++face)
+          for (int voxel = 0; voxel < tree.brickVoxels(); ++voxel) {
+            const glm::ivec3 at = texelOf(brick.index, face) +
+                                  glm::ivec3(voxel % side, voxel / side % side, voxel / (side * side));
+            result.at(static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x)) = true;
+          }
+    return result;
+  }
   /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
   /// `component`: 3 gives the opacity, 0 the three channels of radiance.
   std::vector<VoxelsRead::Voxel> voxels(int level, int component, int face = 0) const {
@@ -197,7 +213,7 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
   }
   static void contents(const voxel_cone_tracing::RadianceOctree& port, PortContents& contents) {
     PortTraits<voxel_cone_tracing::VoxelOctree>::contents(port.tree, contents);
-    contents.texture("radiance", port.radiance);
+    contents.texture("radiance", port.radiance, {.texels = [port] { return port.texelsInUse(); }});
     for (int level = 0; level < port.filledLevels; ++level) {
       const double size = static_cast<double>(port.tree.grid.voxelSize) * (1 << level);
       const bool asGrid = port.tree.voxels == voxel_cone_tracing::VoxelOctree::Voxels::asGrid;

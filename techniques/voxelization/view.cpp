@@ -20,7 +20,7 @@ class ViewPass : public Pass {
     const GridPlacement& grid = fragments->grid;
     const gpu::TextureRef words = bitsOf(frame, *fragments, "bits");
     const CameraView& camera = frame.snapshot().camera;
-    image = Image{frame.image("image of voxels")};
+    image = Image{frame.image("image of voxels"), false};
     frame.dispatch(
         frame.program(view::kProgram),
         {view::parameters({.eyeGrid = (camera.eye - grid.low) / grid.voxelSize,

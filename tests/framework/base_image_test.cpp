@@ -318,6 +318,27 @@ TEST_CASE("the sRGB transfer functions are each other's inverse and meet the sta
   }
 }
 
+TEST_CASE("an EXR keeps which of its layers are no radiance") {
+  const test::TemporaryDirectory place;
+  LayeredImage image;
+  for (const char* name : {"", "light", "colours", "places"}) image.layers[name] = ImageBuffer(2, 2, 3, 0.5f);
+  image.layers["openness"] = ImageBuffer(2, 2, 1, 0.5f);
+  for (const char* name : {"colours", "places"}) image.layers[name].setRadiance(false);
+  const auto file = place.path() / "a.exr";
+  writeExr(file, image);
+  LayeredImage read = readExr(file);
+  for (const auto& [name, layer] : read.layers) {
+    CAPTURE(name);
+    CHECK(layer.isRadiance() == (name == "" || name == "light"));
+  }
+  // Not what was read before is kept, but what is so.
+  for (auto& [name, layer] : read.layers) layer.setRadiance(name != "light");
+  writeExr(file, read);
+  const LayeredImage again = readExr(file);
+  CHECK_FALSE(again.layers.at("light").isRadiance());
+  CHECK(again.layers.at("colours").isRadiance());
+}
+
 TEST_CASE("a PNG holds the exposed, clipped sRGB values, and NaN is magenta") {
   const TemporaryDirectory directory;
   ImageBuffer image(3, 2, 3);

@@ -105,6 +105,19 @@ Uses usesOf(const shader::PackedCode& code, Stage stage) {
     const std::regex expression(pattern);
     return std::distance(std::sregex_iterator(glsl.begin(), glsl.end(), expression), std::sregex_iterator());
   };
+  /// The same of what may be declared as an array, which counts as many times as it is long.
+  const auto countElements = [&](const char* pattern) {
+    const std::regex expression(std::string(pattern) + R"([^;\n]*;)"), length(R"(\[(\d+)\])");
+    std::int64_t sum = 0;
+    for (std::sregex_iterator match(glsl.begin(), glsl.end(), expression), end; match != end; ++match) {
+      const std::string declared = match->str();
+      std::int64_t elements = 1;
+      for (std::sregex_iterator one(declared.begin(), declared.end(), length); one != end; ++one)
+        elements *= std::stoll((*one)[1]);
+      sum += elements;
+    }
+    return sum;
+  };
   const auto highest = [&](const char* pattern) {
     const std::regex expression(pattern);
     std::int64_t most = -1;
@@ -113,8 +126,9 @@ Uses usesOf(const shader::PackedCode& code, Stage stage) {
     return most + 1;
   };
   const std::int64_t storage = count(R"(std430\) [^;{\n]*buffer )"),
-                     images = count(R"(uniform [^;{\n]*[ui]?image[23]D)"),
-                     textures = count(R"(uniform [ui]?sampler)"), blocks = count(R"(std140\) uniform )"),
+                     images = countElements(R"(uniform [^;{\n]*[ui]?image[23]D)"),
+                     textures = countElements(R"(uniform [ui]?sampler)"),
+                     blocks = count(R"(std140\) uniform )"),
                      targets = stage == Stage::fragment ? count(R"(layout\(location = \d+\) out )") : 0;
   // A location holds up to four numbers.
   const auto handed = [&](const char* pattern) { return 4 * highest(pattern); };
@@ -133,6 +147,7 @@ Uses usesOf(const shader::PackedCode& code, Stage stage) {
       uses["GL_MAX_VERTEX_IMAGE_UNIFORMS"] = images;
       uses["GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS"] = textures;
       uses["GL_MAX_VERTEX_UNIFORM_BLOCKS"] = blocks;
+      uses["GL_MAX_VARYING_VECTORS"] = highest(R"(layout\(location = (\d+)\) [^;\n]*out )");
       uses["GL_MAX_VERTEX_OUTPUT_COMPONENTS"] = handed(R"(layout\(location = (\d+)\) [^;\n]*out )");
       break;
     case Stage::geometry:

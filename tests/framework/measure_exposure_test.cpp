@@ -92,6 +92,10 @@ TEST_CASE("radiance is displayed as it is asked for, and what is no radiance as 
   CHECK(displayOf(ImageBuffer(4, 4, 3, 0.1f), wanted).tone == Tone::filmic);
   CHECK(displayOf(ImageBuffer(4, 4, 1, 0.9f), wanted).exposure == 0.0);
   CHECK(displayOf(ImageBuffer(4, 4, 1, 0.9f), wanted).tone == Tone::srgb);
+  ImageBuffer colours(4, 4, 3, 0.1f);
+  colours.setRadiance(false);
+  CHECK(displayOf(colours, wanted).exposure == 0.0);
+  CHECK(displayExposure(colours) == 0.0);
 }
 
 TEST_CASE("several images share one exposure, to which each adds what is lit in it") {

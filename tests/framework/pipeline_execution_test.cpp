@@ -66,7 +66,36 @@ class Sick : public Toy {
   }
 };
 
+/// The same image as a pool, of which row 2 and above were never written.
+struct ToyPool {
+  Image image;
+};
+
+class SickPool : public Sick {
+ public:
+  using Sick::Sick;
+  Out<ToyPool> pool{this, "pool"};
+  void run(PassContext& frame) override {
+    Sick::run(frame);
+    pool = ToyPool{image.value()};
+  }
+};
+
 }  // namespace
+
+template <>
+struct lumivox::PortTraits<ToyPool> {
+  static PortKind kind() {
+    return {"ToyPool", "an image of which half is in use", {{"texels", "d2 rgba32f", "a texel a place"}}};
+  }
+  static void contents(const ToyPool& port, PortContents& contents) {
+    contents.texture("texels", port.image.texture, {.texels = [] {
+                       std::vector<bool> lower(4 * 4);
+                       std::fill_n(lower.begin(), 4 * 2, true);
+                       return lower;
+                     }});
+  }
+};
 
 TEST_CASE("a pipeline renders its outputs as images with their components") {
   Fixture f;
@@ -507,6 +536,23 @@ TEST_CASE("the health scan names pass, port, count and first place of bad values
                                  "pass ill, port image: 1 negative, first at pixel (1, 0)"});
   PipelineExecutor healthy = f.executor(kGather, options);
   CHECK(healthy.render(0.0).healthFindings.empty());
+}
+
+TEST_CASE("the health scan leaves out texels of a pool that mean nothing, and no others") {
+  Fixture f;
+  if (!f) return;
+  f.techniques.add<SickPool>("toy", "sick_pool");
+  RenderOptions options;
+  options.health = true;
+  PipelineExecutor executor = f.executor("pass ill toy.sick_pool { }\noutput o ill.image", options);
+  executor.keepOutput("ill", "pool");
+  std::vector<std::string> findings = executor.render(0.0).healthFindings;
+  findings.erase(std::remove_if(findings.begin(), findings.end(),
+                                [](const std::string& text) { return !Contains("port pool").match(text); }),
+                 findings.end());
+  // Its two NaN are in rows 2 and 3.
+  CHECK(findings == std::vector<std::string>{"pass ill, port pool: 1 infinite, first at pixel (2, 1)",
+                                             "pass ill, port pool: 1 negative, first at pixel (1, 0)"});
 }
 
 TEST_CASE("an unknown camera is refused when the pipeline is bound") {

@@ -70,6 +70,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "of the pool, the texels in use are those of the bricks that there are, at the levels that are filled") {
+  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", "published");
+  for (const int filled : {1, sparse.filledLevels}) {
+    RadianceOctree octree = sparse;
+    octree.filledLevels = filled;
+    PortContents contents(portKind<RadianceOctree>());
+    PortTraits<RadianceOctree>::contents(octree, contents);
+    const auto pool = std::find_if(contents.resources().begin(), contents.resources().end(),
+                                   [](const PortContents::Resource& is) { return is.texture != nullptr; });
+    REQUIRE(pool != contents.resources().end());
+    const std::vector<bool> inUse = pool->filled.texels();
+    std::size_t bricks = 0;
+    for (int level = 0; level < filled; ++level)
+      bricks += OctreeBrickList::of(octree.tree, level).bricks.size();
+    CAPTURE(filled, bricks, inUse.size());
+    CHECK(static_cast<std::size_t>(std::count(inUse.begin(), inUse.end(), true)) == 27 * bricks);
+    CHECK(27 * bricks < inUse.size());
+    const std::vector<float> texels = octree.radiance->downloadFloats(0);
+    REQUIRE(texels.size() == 4 * inUse.size());
+    std::size_t opaque = 0, opaqueOutside = 0;
+    for (std::size_t i = 0; i < inUse.size(); ++i)
+      if (texels[4 * i + 3] > 0.0f) ++(inUse[i] ? opaque : opaqueOutside);
+    CHECK(opaque > 0);
+    if (filled == sparse.filledLevels) CHECK(opaqueOutside == 0);
+  }
+}
+
 TEST_CASE("what bricks share with their neighbours is the same in both, and nothing where there is none") {
   const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", "published");
   for (int level = 0; level < sparse.tree.depth; ++level) {

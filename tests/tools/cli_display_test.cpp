@@ -71,6 +71,37 @@ TEST_CASE("an image says its exposure in the terminal, and that number gives the
   CHECK(place.read("a.png") != bytes);
 }
 
+TEST_CASE(
+    "what is no radiance is shown as it is although it has three channels, also by what reads its EXR") {
+  const Workplace place;
+  place.write("cubes.pipeline",
+              "pipeline \"Cubes\" {\n"
+              "  pass gbuffer direct_lighting.gbuffer { }\n"
+              "  pass direct direct_lighting.shade { gbuffer gbuffer }\n"
+              "  pass voxels voxelization.conservative { resolution 8 }\n"
+              "  pass view voxelization.view { fragments voxels.fragments }\n"
+              "  output direct direct.radiance\n"
+              "  output cubes view.image\n"
+              "}\n");
+  const std::string command =
+      "lumivox -q render " + quoted(place.scene()) + " " + quoted(place.file("cubes.pipeline"));
+  REQUIRE(runCommand(command + " -o " + quoted(place.file("a.exr"))).exitCode == 0);
+  LayeredImage image = readExr(place.path() / "a.exr");
+  CHECK_FALSE(image.layers.at("cubes").isRadiance());
+  CHECK(image.layers.at("direct").isRadiance());
+  REQUIRE(runCommand(command + " --output cubes -o " + quoted(place.file("cubes.png"))).exitCode == 0);
+  const ByteImage shown = readByteImage(place.path() / "cubes.png");
+  CHECK(shown.values == displayBytes(image.layers.at("cubes")));
+  // What somebody asks for holds.
+  REQUIRE(
+      runCommand(command + " --exposure=-2 --output cubes -o " + quoted(place.file("dark.png"))).exitCode ==
+      0);
+  CHECK(meanGrey(readByteImage(place.path() / "dark.png")) < 0.7 * meanGrey(shown));
+  const CommandResult compared =
+      runCommand("lumivox compare " + quoted(place.file("a.exr")) + " " + quoted(place.file("a.exr")));
+  CHECK(contains(unwrapped(compared.output), "as they are"));
+}
+
 TEST_CASE("exposure and tone curve change no EXR, and the reference's header says its exposure") {
   const Workplace place;
   for (const char* name : {"a.exr", "b.exr"})

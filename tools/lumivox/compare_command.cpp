@@ -84,6 +84,7 @@ ImageBuffer withoutAlpha(const ImageBuffer& image) {
   for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel)
     for (std::size_t channel = 0; channel < 3; ++channel)
       rgb.values()[3 * pixel + channel] = image.values()[4 * pixel + channel];
+  rgb.setRadiance(image.isRadiance());
   return rgb;
 }
 
@@ -184,8 +185,8 @@ int compareFiles(const CompareCommand& command) {
           shown(pair.second), command.reference.string(), right.width(), right.height(), right.channels()));
     const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
     const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
-    // Occlusion, a fraction, is shown as it is.
-    const bool asItIs = !isRadiance(right) && !command.display.given();
+    // What is no radiance is shown as it is.
+    const bool asItIs = !(left.isRadiance() && right.isRadiance()) && !command.display.given();
     asTheyAre = asTheyAre || asItIs;
     const Display layerDisplay = asItIs ? Display{} : Display{display.exposure, command.display.toneCurve()};
     SeedsError compared = compareSeeds(std::span(&left, 1), right, known ? variance->second : ImageBuffer{},
@@ -213,7 +214,7 @@ int compareFiles(const CompareCommand& command) {
   else
     print(textTable(rows) + fmt::format("SSIM and FLIP LDR are taken at {} ({}){}\n",
                                         exposureText(display.exposure), display.from,
-                                        asTheyAre ? "; layers of one channel as they are" : ""));
+                                        asTheyAre ? "; layers that are no radiance as they are" : ""));
   return good ? kGood : kNotGood;
 }
 

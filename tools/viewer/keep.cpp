@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void saveImage(const fs::path& file, const RenderedSide& side, const std::string& output, double exposure,
-               Curve curve) {
+void saveImage(const fs::path& file, const RenderedSide& side, const std::string& output,
+               const std::optional<double>& given, double exposure, Curve curve) {
   if (file.extension() == ".png") {
     if (curve == Curve::falseColour)
       throw Error("save_image: false colour is of the window; expected another tone, or `shot`");
@@ -27,7 +27,9 @@ void saveImage(const fs::path& file, const RenderedSide& side, const std::string
     const Tone tone = curve == Curve::linear   ? Tone::linear
                       : curve == Curve::filmic ? Tone::filmic
                                                : Tone::srgb;
-    writePng(file, image, displayOf(image, {exposure, tone}));
+    const Display chosen{exposure, tone};
+    // As the picture is: what is no radiance is exposed only where somebody says by how much.
+    writePng(file, image, given ? chosen : displayOf(image, chosen));
   } else {
     LayeredImage layered;
     for (const auto& [name, image] : side.frame.outputs)
@@ -95,7 +97,7 @@ bool Session::doKeep(const Action& action) {
       throw Error("save_image: there is no picture; " + (rendered_ == nullptr
                                                              ? std::string("expected `wait frame` before")
                                                              : rendered_->sides.front().error));
-    saveImage(file, rendered_->sides.front(), state_.output, exposure_, state_.curve);
+    saveImage(file, rendered_->sides.front(), state_.output, state_.exposure, exposure_, state_.curve);
   } else {
     const TextToWrite text{file, isScene ? sceneText() : textWithDefaults(*side.pipeline, side.values)};
     if (!isScene) Pipeline::parse(text.text, file);  // what is written can be read

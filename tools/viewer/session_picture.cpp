@@ -9,12 +9,6 @@
 #include "viewer/session.h"
 
 namespace lumivox::viewer {
-namespace {
-
-constexpr const char* kRadianceUnit = "W/(sr m^2)";
-
-}  // namespace
-
 void Session::compose() {
   if (lastGood_ == nullptr) return;
   const auto imageOfSide = [&](std::size_t side) {
@@ -35,9 +29,9 @@ void Session::compose() {
     exposure_ = 0.0;
   }
   // Fractions are shown as they are.
-  const bool fraction = !isRadiance(image) && !state_.exposure;
+  const bool fraction = !image.isRadiance() && !state_.exposure;
   const PictureLook look{fraction ? 0.0 : exposure_, state_.curve, flicker_ < kFlickerSeconds,
-                         isRadiance(image) ? kRadianceUnit : std::string()};
+                         image.isRadiance() ? kRadianceUnit : std::string()};
   const Picture main = showsPort ? portPicture(look) : pictureOf(image, look);
   std::optional<ReferenceLayer> truth;
   if (reference_ != nullptr && !showsPort)

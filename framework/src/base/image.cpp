@@ -13,7 +13,7 @@
 namespace lumivox {
 
 ImageBuffer::ImageBuffer(int width, int height, int channels, float value)
-    : width_(width), height_(height), channels_(channels) {
+    : width_(width), height_(height), channels_(channels), radiance_(channels != 1) {
   if (width < 1 || height < 1 || channels < 1) {
     throw Error(
         fmt::format("an image of {} x {} pixels with {} channels cannot be made; expected at least 1 of each",

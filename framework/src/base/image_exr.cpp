@@ -18,6 +18,7 @@
 #include <new>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string_view>
 
 #include "lumivox/base/error.h"
@@ -293,6 +294,28 @@ std::span<const std::string_view> componentsFor(int channels) {
   }
 }
 
+/// Holds the names of layers of several channels that are no radiance, with commas between them.
+constexpr const char* kNotRadiance = "lumivox.not_radiance";
+
+void readNotRadiance(LayeredImage& image) {
+  const auto listed = image.attributes.find(kNotRadiance);
+  if (listed == image.attributes.end()) return;
+  std::stringstream names(listed->second);
+  for (std::string name; std::getline(names, name, ',');)
+    if (const auto layer = image.layers.find(name); layer != image.layers.end())
+      layer->second.setRadiance(false);
+}
+
+std::map<std::string, std::string> attributesOf(const LayeredImage& image) {
+  std::map<std::string, std::string> result = image.attributes;
+  std::string names;
+  for (const auto& [name, layer] : image.layers)
+    if (layer.channels() > 1 && !layer.isRadiance()) names += (names.empty() ? "" : ",") + name;
+  result.erase(kNotRadiance);
+  if (!names.empty()) result[kNotRadiance] = names;
+  return result;
+}
+
 }  // namespace
 
 LayeredImage readExr(const std::filesystem::path& path) {
@@ -310,6 +333,7 @@ LayeredImage readExr(const std::filesystem::path& path) {
       }
     }
     for (int part = 0; part < file.parts(); ++part) readPart(file, part, result);
+    readNotRadiance(result);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const std::bad_alloc&) {
@@ -368,7 +392,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image) {
                                       pixelStride * static_cast<std::size_t>(layer.width())));
       }
     }
-    addAttributes(image.attributes, header);
+    addAttributes(attributesOf(image), header);
     MemoryOutput stream(path.string());
     {
       Imf::OutputFile file(stream, header);

@@ -131,8 +131,9 @@ class SceneReport {
   }
 
   /// With and without leaving out, of every pipeline whose default point works, as long as there is time.
-  void measurePrunings(const Budget& budget) {
+  void measurePrunings(const Budget& budget, const std::function<void()>& atWork) {
     for (const Point& point : points_) {
+      atWork();
       if (!point.wanted.point.isDefault || !works(point)) continue;
       if (budget.allows(0.0))
         measurePruning(*point.wanted.loaded);
@@ -284,7 +285,7 @@ void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, c
     options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
   };
   for (SceneReport& scene : scenes) scene.measureDefaults(done);
-  for (SceneReport& scene : scenes) scene.measurePrunings(budget);
+  for (SceneReport& scene : scenes) scene.measurePrunings(budget, [&] { unfinished.renew(); });
   for (bool more = true; more;) {
     more = false;
     for (SceneReport& scene : scenes) more = scene.measureMore(budget, done) || more;
@@ -357,6 +358,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   unfinished.want(keys);
   for (SceneReport& report : reports) {
     report.makeReference();
+    unfinished.renew();
     summary.takenUp += report.takenUp();
   }
   const Budget budget(options.budgetSeconds);

@@ -430,7 +430,7 @@ class Reproduction {
       meterImage(meter_, *scene, snapshotOf(*scene, panel.time, panel.camera, width, height), shown.image);
       const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
-      shown.radiance = isRadiance(shown.image);
+      shown.radiance = shown.image.isRadiance();
       shown.meanLuminance =
           health.sum / static_cast<double>(bright.pixelCount() - health.nan - health.infinite);
     }
@@ -497,11 +497,7 @@ class Reproduction {
     const auto* image = dynamic_cast<const Out<Image>*>(output);
     if (image == nullptr)
       throw Error(fmt::format("{}: {}.{} is not an image", panel.place.text(), panel.pass, panel.port));
-    const gpu::Texture& texture = *image->value().texture;
-    // One channel of what is a fraction, which no exposure belongs to.
-    const int channels =
-        gpu::componentCount(texture.description().format) < 3 ? 1 : channelsOf(output->contributes());
-    return imageOf(texture, channels);
+    return imageOf(*image);
   }
 
   ImageBuffer traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {

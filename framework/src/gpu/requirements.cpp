@@ -43,6 +43,7 @@ constexpr Requirement kRequirements[] = {
     LUMIVOX_REQUIREMENT(GL_MAX_VERTEX_OUTPUT_COMPONENTS, 64, 64, "numbers that a vertex shader hands on"),
     LUMIVOX_REQUIREMENT(GL_MAX_FRAGMENT_INPUT_COMPONENTS, 64, 128,
                         "numbers that a fragment shader is handed"),
+    LUMIVOX_REQUIREMENT(GL_MAX_VARYING_VECTORS, 15, 15, "vectors that a stage hands to the next one"),
     LUMIVOX_REQUIREMENT(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 512, 1024, "invocations of a work group"),
     LUMIVOX_REQUIREMENT_ALONG(GL_MAX_COMPUTE_WORK_GROUP_SIZE, 0, 512, 1024,
                               "invocations of a work group along x"),

@@ -16,7 +16,7 @@ void ExposureMeter::add(const ImageBuffer& image, std::span<const unsigned char>
   if (!emitting.empty() && emitting.size() != image.pixelCount())
     throw Error(fmt::format("it is known of {} pixels whether they emit; expected {}", emitting.size(),
                             image.pixelCount()));
-  if (!isRadiance(image)) return;
+  if (!image.isRadiance()) return;
   for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
     const auto luminance = static_cast<float>(luminanceAt(image, pixel));
     if (!std::isfinite(luminance) || luminance <= 0.0f) continue;
@@ -44,12 +44,8 @@ double ExposureMeter::exposure() const {
   return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
 }
 
-bool isRadiance(const ImageBuffer& image) {
-  return image.channels() != 1;
-}
-
 Display displayOf(const ImageBuffer& image, const Display& ofRadiance) {
-  return isRadiance(image) ? ofRadiance : Display{};
+  return image.isRadiance() ? ofRadiance : Display{};
 }
 
 double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting) {

@@ -176,8 +176,8 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
       fmt::format("{}: {} ({})", result.published.id, result.published.title, exposureText(result.exposure));
   sheet.columns = result.published.columns;
   for (const ShownPanel& panel : result.panels)
-    sheet.panels.push_back(
-        {panel.name, panel.image, displayOf(panel.image, {result.exposure, Tone::srgb}), panel.whyNot});
+    sheet.panels.push_back({panel.name, panel.image,
+                            panel.radiance ? Display{result.exposure, Tone::srgb} : Display{}, panel.whyNot});
   return contactSheet(sheet);
 }
 

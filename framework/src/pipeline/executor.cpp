@@ -399,16 +399,13 @@ void PipelineExecutor::State::collectImages(FrameResult& result, Images images) 
           neutralImage(last->camera.width, last->camera.height, output.contributes());
       continue;
     }
-    const std::vector<gpu::TextureRef> textures = output.textures();
-    if (textures.empty())
-      throw Error(fmt::format("pass output '{}' has no texture", graph.outputText(bound.source)));
-    const gpu::TextureDescription& size = textures.front()->description();
-    if (size.width != last->camera.width || size.height != last->camera.height)
+    ImageBuffer image = imageOf(output);
+    if (image.width() != last->camera.width || image.height() != last->camera.height)
       throw Error(fmt::format(
           "output '{}' of pipeline \"{}\": {} has {} x {} texels; expected {} x {}, the image's size",
-          bound.name, pipeline.name, graph.outputText(bound.source), size.width, size.height,
+          bound.name, pipeline.name, graph.outputText(bound.source), image.width(), image.height(),
           last->camera.width, last->camera.height));
-    result.outputs[bound.name] = imageOf(*textures.front(), channelsOf(output.contributes()));
+    result.outputs[bound.name] = std::move(image);
   }
 }
 

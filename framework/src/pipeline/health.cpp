@@ -53,11 +53,12 @@ void scanHealth(const std::string& pass, const OutBase& output, std::vector<std:
   for (const PortContents::Resource& resource : contents.resources())
     if (resource.texture) textures.push_back(&resource);
   for (std::size_t number = 0; number < textures.size(); ++number) {
-    const PortResource& what = *textures[number]->what;
-    const gpu::Texture& texture = *textures[number]->texture;
+    const PortContents::Resource& resource = *textures[number];
+    const PortResource& what = *resource.what;
+    const gpu::Texture& texture = *resource.texture;
     const gpu::TextureDescription& description = texture.description();
     if (!isFloat(description.format)) continue;
-    for (int level = 0; level < description.levels; ++level) {
+    for (int level = 0; level < resource.filled.levels.value_or(description.levels); ++level) {
       const std::vector<float> values = texture.downloadFloats(level);
       const auto extent = [level](int size) { return static_cast<std::size_t>(std::max(1, size >> level)); };
       const std::size_t texels =
@@ -66,22 +67,25 @@ void scanHealth(const std::string& pass, const OutBase& output, std::vector<std:
                                                     : static_cast<std::size_t>(description.depth));
       const std::size_t components =
           std::max<std::size_t>(1, values.size() / std::max<std::size_t>(1, texels));
+      const std::vector<bool> inUse =
+          level == 0 && resource.filled.texels ? resource.filled.texels() : std::vector<bool>();
       Bad bad[] = {{"NaN"}, {"infinite"}, {"negative"}};
       for (std::size_t i = 0; i < values.size(); ++i) {
         const float value = values[i];
         if (std::isfinite(value) && value >= 0.0f) continue;
         if (std::isfinite(value) && what.sign == PortResource::Sign::any) continue;
+        if (!inUse.empty() && !inUse[i / components]) continue;
         Bad& kind = bad[std::isnan(value) ? 0 : std::isinf(value) ? 1 : 2];
         if (kind.count++ == 0) kind.firstTexel = i / components;
       }
       for (const Bad& kind : bad) {
         if (kind.count == 0) continue;
         // Not by its label, which may stem from an earlier use of the same memory.
-        const std::string resource = textures.size() > 1 ? fmt::format(" ({}, texture {} of {})", what.name,
-                                                                       number + 1, textures.size())
-                                                         : std::string();
-        findings.push_back(fmt::format("pass {}, port {}{}: {} {}, first at {}", pass, output.name(),
-                                       resource, kind.count, kind.what,
+        const std::string name = textures.size() > 1 ? fmt::format(" ({}, texture {} of {})", what.name,
+                                                                   number + 1, textures.size())
+                                                     : std::string();
+        findings.push_back(fmt::format("pass {}, port {}{}: {} {}, first at {}", pass, output.name(), name,
+                                       kind.count, kind.what,
                                        placeText(description, level, kind.firstTexel)));
       }
     }

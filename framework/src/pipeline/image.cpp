@@ -34,4 +34,16 @@ ImageBuffer imageOf(const gpu::Texture& texture, int channels) {
   return image;
 }
 
+ImageBuffer imageOf(const OutBase& output) {
+  const std::vector<gpu::TextureRef> textures = output.textures();
+  if (textures.empty())
+    throw Error(fmt::format("output '{}' of kind {} has no texture", output.name(), output.kind().name));
+  // One channel of what is a fraction.
+  const bool one = gpu::componentCount(textures.front()->description().format) < 3;
+  ImageBuffer result = imageOf(*textures.front(), one ? 1 : channelsOf(output.contributes()));
+  const auto* image = dynamic_cast<const Out<Image>*>(&output);
+  if (image != nullptr && !image->value().radiance) result.setRadiance(false);
+  return result;
+}
+
 }  // namespace lumivox

@@ -25,9 +25,9 @@ const PortResource& PortContents::resourceNamed(const std::string& name) const {
   return find(kind_->resources, *kind_, "resource", name);
 }
 
-void PortContents::texture(const std::string& name, const gpu::TextureRef& texture) {
+void PortContents::texture(const std::string& name, const gpu::TextureRef& texture, FilledTexels filled) {
   const PortResource& what = resourceNamed(name);
-  if (texture) resources_.push_back({&what, texture, nullptr});
+  if (texture) resources_.push_back({&what, texture, nullptr, std::move(filled)});
 }
 
 void PortContents::buffer(const std::string& name, const gpu::BufferRef& buffer) {

@@ -31,6 +31,11 @@ class ImageBuffer {
   std::vector<float>& values() { return values_; }
   const std::vector<float>& values() const { return values_; }
 
+  /// Whether the values are radiance, which pictures expose: unless it was said otherwise, those of one
+  /// channel are not (occlusion and other fractions), all others are.
+  bool isRadiance() const { return radiance_; }
+  void setRadiance(bool radiance) { radiance_ = radiance; }
+
   bool sameShape(const ImageBuffer& other) const {
     return width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_;
   }
@@ -43,12 +48,13 @@ class ImageBuffer {
            static_cast<std::size_t>(channel);
   }
   int width_ = 0, height_ = 0, channels_ = 0;
+  bool radiance_ = true;
   std::vector<float> values_;
 };
 
 /// Several images of one size under names, and text attributes: what one EXR file holds. The layer "" is
 /// the file's main layer (channels R, G, B without prefix); three channels are named R G B, four R G B A, one
-/// Y, two X Y.
+/// Y, two X Y. Layers that are no radiance although they have several channels are named in an attribute.
 struct LayeredImage {
   std::map<std::string, ImageBuffer> layers;
   std::map<std::string, std::string> attributes;

@@ -14,7 +14,7 @@ inline constexpr double kKey = 0.18;
 
 /// One exposure for as many images as are shown together: the frames of a sequence, the panels of a sheet.
 /// Lamps that are seen do not count, so that they may fill any part of an image; neither do pixels that are
-/// black, NaN or infinite. What is no radiance (isRadiance) does not count.
+/// black, NaN or infinite. What is no radiance does not count.
 class ExposureMeter {
  public:
   /// `emitting`: for each pixel whether it shows something that shines by itself; empty: that is not known,
@@ -28,11 +28,9 @@ class ExposureMeter {
   std::vector<float> lit_, shining_;  ///< luminances above 0
 };
 
-/// How an image is displayed where radiance is displayed by `ofRadiance`: what is no radiance (one channel:
-/// occlusion and other fractions) as it is, whatever stands beside it. Whoever shows images asks this.
+/// How an image is displayed where radiance is displayed by `ofRadiance`: what is no radiance as it is,
+/// whatever stands beside it. Whoever shows images asks this.
 Display displayOf(const ImageBuffer& image, const Display& ofRadiance);
-/// Whether an image holds radiance, in three channels.
-bool isRadiance(const ImageBuffer& image);
 
 /// That of one image.
 double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting = {});

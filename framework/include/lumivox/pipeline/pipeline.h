@@ -299,5 +299,8 @@ ImageBuffer neutralImage(int width, int height, Contributes component);
 
 /// A texture's image as the framework stores images: row 0 on top.
 ImageBuffer imageOf(const gpu::Texture& texture, int channels = 3);
+/// That of an output that has a value: of its first texture, in one channel where that is a fraction, and
+/// whether it is radiance. Error where it has no texture.
+ImageBuffer imageOf(const OutBase& output);
 
 }  // namespace lumivox

@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -132,6 +133,17 @@ struct VoxelsRead {
 };
 using VoxelSource = std::variant<VoxelTexels, VoxelBits, VoxelList, VoxelsFilled, VoxelsRead>;
 
+/// The unit of radiance, as fields of ports name it.
+inline constexpr const char* kRadianceUnit = "W/(sr m^2)";
+
+/// What of a texture was written: the rest is whatever the memory held before.
+struct FilledTexels {
+  std::optional<int> levels{};  ///< finest first; none: all that there are
+  /// Of a pool, which has room for more than it holds: of each texel of the finest level, whether it is in
+  /// use; empty: all of them are.
+  std::function<std::vector<bool>()> texels{};
+};
+
 /// The contents of a value of a kind of port: filled by PortTraits<Port>::contents().
 class PortContents {
  public:
@@ -139,6 +151,7 @@ class PortContents {
     const PortResource* what;
     gpu::TextureRef texture;
     gpu::BufferRef buffer;
+    FilledTexels filled{};
   };
   struct Field {
     std::string name, unit;  ///< as the kind says, unless the value says otherwise
@@ -157,7 +170,7 @@ class PortContents {
   explicit PortContents(const PortKind& kind) : kind_(&kind) {}
 
   /// Names are those of the kind; Error for another one. Null resources are left out.
-  void texture(const std::string& name, const gpu::TextureRef& texture);
+  void texture(const std::string& name, const gpu::TextureRef& texture, FilledTexels filled = {});
   void buffer(const std::string& name, const gpu::BufferRef& buffer);
   Field& field(const std::string& name, const VoxelBox& box, VoxelSource source, int level = 0);
   void occupies(const GridPlacement& grid, VoxelSource source) { occupancy_ = {{grid, std::move(source)}}; }

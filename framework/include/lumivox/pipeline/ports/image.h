@@ -7,6 +7,8 @@ namespace lumivox {
 /// An image-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
 struct Image {
   gpu::TextureRef texture;
+  /// False: fractions, counts, colours that stand for something; pictures show them as they are, unexposed.
+  bool radiance = true;
 };
 
 template <>

@@ -69,10 +69,10 @@ struct PortTraits<RadianceGrid> {
              {"opacity", "opacity", "1", PortField::Role::fog}}};
   }
   static void contents(const RadianceGrid& port, PortContents& contents) {
-    contents.texture("radiance", port.radiance);
+    const int filled = port.filledLevels == 0 ? port.radiance->description().levels : port.filledLevels;
+    contents.texture("radiance", port.radiance, {.levels = filled});
     contents.buffer("bricks", port.occupied.bricks);
     contents.buffer("count", port.occupied.count);
-    const int filled = port.filledLevels == 0 ? port.radiance->description().levels : port.filledLevels;
     for (int level = 0; level < filled; ++level) {
       const VoxelBox box = VoxelBox::of(port.grid, levelResolution(port.grid.resolution, level));
       const VoxelTexels radiance{{port.radiance}, {{0, 0}, {0, 1}, {0, 2}}, level, port.unit};
