@@ -11,6 +11,7 @@
 #include <half.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -316,6 +317,21 @@ TEST_CASE("the sRGB transfer functions are each other's inverse and meet the sta
     const float encoded = static_cast<float>(i) / 255.0f;
     REQUIRE(std::lround(255.0f * linearToSrgb(srgbToLinear(encoded))) == i);
   }
+}
+
+TEST_CASE("an EXR whose attribute claims more bytes than there are is refused before they are asked for") {
+  const test::TemporaryDirectory place;
+  const auto file = place.path() / "a.exr";
+  writeExr(file, {{{"", ImageBuffer(2, 2, 3, 0.5f)}}, {{"said", "a text"}}});
+  std::string bytes = readFile(file);
+  const std::size_t at = bytes.find(std::string("said\0string\0", 12)) + 12;
+  REQUIRE(at < bytes.size());
+  CHECK(readExrAttributes(file).at("said") == "a text");
+  const std::int32_t claimed = 1634533376;
+  std::memcpy(bytes.data() + at, &claimed, sizeof(claimed));
+  place.write("a.exr", bytes);
+  CHECK_THAT(test::messageOf<Error>([&] { readExrAttributes(file); }),
+             Catch::Contains("its attribute 'said' goes on beyond the end"));
 }
 
 TEST_CASE("an EXR keeps which of its layers are no radiance") {

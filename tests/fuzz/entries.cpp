@@ -151,10 +151,7 @@ void shaderPack(std::string_view input) {
           require(stage.code < read.codes.size(), "every stage has its code");
       }
     }
-    for (const shader::PackedCode& code : read.codes) {
-      code.spirv();
-      code.glsl();
-    }
+    for (const shader::PackedCode& code : read.codes) code.spirv();
     const fs::path copy = folder().write("copy.shaderpack", "");
     shader::writeShaderPack(copy, read);
     require(shader::readShaderPack(copy).programs.size() == read.programs.size(),

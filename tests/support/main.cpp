@@ -1,8 +1,7 @@
-#define CATCH_CONFIG_RUNNER
-#include <catch2/catch.hpp>
 #include <cstdlib>
 
 #include "lumivox/plugin/technique.h"
+#include "support/cases.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 // OpenVDB loses the nodes that it had read when a file turns out to be damaged.
@@ -16,5 +15,5 @@ int main(int count, char** arguments) {
   // Every test, and every program that a test starts, hears at once what the driver finds wrong.
   setenv("LUMIVOX_DEBUG_CONTEXT", "1", 0);
   lumivox::requireLibraryOf(lumivox::techniqueVersionHere());
-  return Catch::Session().run(count, arguments);
+  return lumivox::test::runCases(count, arguments);
 }

@@ -9,6 +9,8 @@
 #include <iostream>
 #include <sstream>
 
+#include "support/cases.h"
+
 namespace lumivox::test {
 
 std::filesystem::path sourceDirectory() {
@@ -21,6 +23,7 @@ std::filesystem::path binaryDirectory() {
 
 void skip(const std::string& reason) {
   std::cout << "SKIPPED: " << reason << std::endl;
+  noteSkipped(reason);
   SUCCEED("skipped");
 }
 

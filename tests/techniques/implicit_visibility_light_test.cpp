@@ -259,7 +259,8 @@ TEST_CASE("a disc of a tree sends the mean of its leaves by area, to each side")
 
 TEST_CASE("groups of separate squares send what their fronts send on average, and nothing behind") {
   // 16 x 16 squares of 1/4 m in a plane 4 m above a small floor, shining 1 and 3 in turn, or 2 all of them.
-  const auto irradianceBelow = [](float one, float other, bool down, bool* hasGroups, int side = 16) {
+  const auto irradianceBelow = [](float one, float other, bool down, bool* hasGroups, int side = 16,
+                                  float aside = 0.0f) {
     SceneBuilder builder;
     const int black = builder.lambert(0.0f), first = builder.lambert(0.0f, one),
               second = builder.lambert(0.0f, other);
@@ -267,8 +268,8 @@ TEST_CASE("groups of separate squares send what their fronts send on average, an
     const float width = 4.0f / static_cast<float>(side);
     for (int z = 0; z < side; ++z)
       for (int x = 0; x < side; ++x) {
-        const glm::vec3 corner(width * static_cast<float>(x) - 2.0f, 4.0f,
-                               width * static_cast<float>(z) - 2.0f);
+        const glm::vec3 corner(width * static_cast<float>(x) - 2.0f + aside, 4.0f,
+                               width * static_cast<float>(z) - 2.0f + 0.5f * aside);
         const glm::vec3 right(width, 0, 0), ahead(0, 0, width);
         builder.quad(corner, down ? right : ahead, down ? ahead : right, (x + z) % 2 == 0 ? first : second);
       }
@@ -296,6 +297,11 @@ TEST_CASE("groups of separate squares send what their fronts send on average, an
   CHECK(even == Approx(irradianceBelow(2.0f, 2.0f, true, nullptr, 1)).epsilon(0.02));
   CHECK(irradianceBelow(1.0f, 3.0f, true, nullptr) == Approx(even).epsilon(0.01));
   CHECK(irradianceBelow(2.0f, 2.0f, false, nullptr) == 0.0);
+  // At a slant, too, where the direction has parts of all three axes.
+  bool hasSlantedGroups = false;
+  const double slanted = irradianceBelow(2.0f, 2.0f, true, &hasSlantedGroups, 16, 4.0f);
+  CHECK(hasSlantedGroups);
+  CHECK(slanted == Approx(irradianceBelow(2.0f, 2.0f, true, nullptr, 1, 4.0f)).epsilon(0.2));
 }
 
 TEST_CASE("an element that is partly in shadow reflects its lit part, whichever way the border runs") {

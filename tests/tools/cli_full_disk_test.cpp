@@ -57,7 +57,7 @@ TEST_CASE("a page larger than files may be leaves the old page, CSV and JSON") {
   REQUIRE(runCommand(reportWords(place, "fast", "1")).exitCode == 0);
   const std::string page = place.read("disk/page.html"), csv = place.read("disk/page.csv"),
                     json = place.read("disk/page.json");
-  const std::uintmax_t blocks = page.size() / 512 - 1;  // of sh
+  const std::uintmax_t blocks = page.size() / 1024;  // of sh; a page that is not complete is about as large
   const CommandResult limited = runCommand("sh -c 'trap \"\" XFSZ; ulimit -f " + std::to_string(blocks) +
                                            "; exec \"$@\"' sh " + reportWords(place, "fast", "2"));
   INFO(limited.errors);

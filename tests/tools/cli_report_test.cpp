@@ -227,7 +227,8 @@ TEST_CASE("a report that cannot be made says so before the work and leaves the e
                "wrong.pipeline");
   CHECK(place.read("out/page.html") == "an earlier page");
   std::filesystem::create_directories(place.path() / "cache");
-  std::filesystem::create_directories(place.path() / "cache/index.html");  // a folder in the place of the page
+  std::filesystem::create_directories(place.path() /
+                                      "cache/index.html");  // a folder in the place of the page
   checkRefused(makeReport(place, "", "cache"), place.file("cache"));
   checkRefused(makeReport(place, "", "room.obj/page.html"), "room.obj");
   checkRefused(

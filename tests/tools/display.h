@@ -53,8 +53,7 @@ class Display {
     close(ready[0]);
     if (number.empty()) return;
     there_ = true;
-    setenv("DISPLAY", (":" + number).c_str(), 1);
-    setenv("XAUTHORITY", (folder_.path() / "authority").c_str(), 1);
+    number_ = ":" + number;
   }
   ~Display() {
     if (pid_ <= 0) return;
@@ -64,6 +63,12 @@ class Display {
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
+  /// Programs that are started from now on show their windows there.
+  void announce() const {
+    if (!there_) return;
+    setenv("DISPLAY", number_.c_str(), 1);
+    setenv("XAUTHORITY", (folder_.path() / "authority").c_str(), 1);
+  }
   /// Whether there is one: Xvfb may not be installed.
   bool there() const { return there_; }
   /// What stands on the screen now, from its memory: a file of xwd, with big-endian words before pixels of
@@ -93,11 +98,13 @@ class Display {
   TemporaryDirectory folder_;
   pid_t pid_ = -1;
   bool there_ = false;
+  std::string number_;
 };
 
 /// That of this test program, from the first test on that asks for it.
 inline const Display& display() {
   static const Display one;
+  one.announce();  // what a case sets is put back after it
   return one;
 }
 

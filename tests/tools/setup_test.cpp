@@ -1,7 +1,11 @@
 // The set-up script, with stand-ins for the programs that would look at or change the machine.
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <sstream>
 #include <string>
+#include <thread>
 
 #include "lumivox/base/file.h"
 #include "support/support.h"
@@ -103,16 +107,19 @@ TEST_CASE("what is configured already is not configured again, and a copied buil
 TEST_CASE("./run and ./test set up what they need and pass their arguments on; alone ./run measures") {
   const Machine machine;
   const fs::path project = machine.project();
-  for (const char* script : {"run", "test", "cmake/setup.sh"})
+  fs::create_directories(project / "tests");
+  for (const char* script : {"run", "test", "tests/run", "cmake/setup.sh"})
     fs::copy_file(test::sourceDirectory() / script, project / script);
   fs::copy_file(project / "cmake/packages.txt", project / "build/.packages-ok");
   writeFileAtomically(project / "build/build.ninja", "");
   machine.program("ninja", "echo \"ninja $*\"");
   machine.program("ctest", "echo \"ctest $*\"");
-  for (const char* program : {"lumivox", "vdbexport"}) {
+  for (const char* program : {"lumivox", "vdbexport", "dsl_tests"}) {
     const fs::path file = project / "build/bin" / program;
     fs::create_directories(file.parent_path());
-    writeFileAtomically(file, "#!/bin/sh\necho \"" + std::string(program) + " $*\"\n");
+    const std::string says =
+        program == std::string("dsl_tests") ? "dsl_lexer: words end at spaces" : program + std::string(" $*");
+    writeFileAtomically(file, "#!/bin/sh\necho \"" + says + "\"\n");
     fs::permissions(file, fs::perms::owner_all);
   }
   const auto run = [&](const std::string& line) {
@@ -129,6 +136,74 @@ TEST_CASE("./run and ./test set up what they need and pass their arguments on; a
   CHECK(exporter.errors.find("ninja laboratory vdbexport\n") != std::string::npos);
   const auto tests = run("test -R dsl");
   CHECK(tests.output.find("ctest --test-dir " + (project / "build").string()) == 0);
-  CHECK(tests.output.find(" -R dsl\n") != std::string::npos);
+  CHECK(tests.output.find(" -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n") != std::string::npos);
+  CHECK(run("test -R 'at spaces$'").output.find(" -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n") !=
+        std::string::npos);
+  const auto none = run("test -R absent");
+  CHECK(none.exitCode == 1);
+  CHECK(none.errors.find("no case matches 'absent'") != std::string::npos);
+  CHECK(run("run view a.scene").errors.find("ninja laboratory lumivox_view\n") != std::string::npos);
   CHECK(tests.errors.find("ninja all\n") != std::string::npos);
+}
+
+namespace {
+
+/// What chooses cases of this process chooses none of those that it starts.
+constexpr const char* kAnew = "env -u LUMIVOX_TEST_CASES -u LUMIVOX_TEST_SHARE -u LUMIVOX_TEST_WITHOUT ";
+
+}  // namespace
+
+TEST_CASE("./test tells of cases: it names one that crashes, and runs what stands behind it") {
+  const Machine machine;
+  const fs::path project = machine.project();
+  fs::create_directories(project / "tests");
+  fs::create_directories(project / "build/bin");
+  fs::copy_file(test::sourceDirectory() / "tests/run", project / "tests/run");
+  machine.program(
+      "ctest",
+      "printf 'begin\\tdsl_lexer: a\\nend\\tpassed\\t0.50\\tdsl_lexer: a\\nbegin\\tdsl_lexer: b\\n' "
+      "> \"$LUMIVOX_TEST_EVENTS/dsl_tests.1\"\nexit 8");
+  const fs::path program = project / "build/bin/dsl_tests";
+  writeFileAtomically(
+      program,
+      "#!/bin/sh\ncat \"$LUMIVOX_TEST_WITHOUT\" > '" + (project / "without").string() +
+          "'\nprintf 'begin\\tdsl_lexer: c\\nskip\\tno model\\nend\\tpassed\\t0.25\\tdsl_lexer: c\\n' "
+          "> \"$LUMIVOX_TEST_EVENTS/dsl_tests.2\"\n");
+  fs::permissions(program, fs::perms::owner_all);
+  const auto result = test::runCommand(kAnew + ("PATH='" + (project.parent_path() / "bin").string()) +
+                                       "':$PATH '" + (project / "tests/run").string() + "'");
+  INFO(result.output << result.errors);
+  CHECK(result.exitCode == 1);
+  CHECK(readFile(project / "without") == "dsl_lexer: a\ndsl_lexer: b\n");
+  CHECK(result.output.find("crashed: dsl_lexer: b\n") != std::string::npos);
+  CHECK(result.output.find("skipped: dsl_lexer: c (no model)\n") != std::string::npos);
+  CHECK(result.output.find("3 cases: 1 passed, 1 failed, 1 skipped;") != std::string::npos);
+}
+
+TEST_CASE("a case of the next one: it does not end where that asks for it") {
+  while (std::getenv("LUMIVOX_TEST_WAITS") != nullptr) std::this_thread::sleep_for(std::chrono::seconds(1));
+  SUCCEED("nobody asked");
+}
+
+TEST_CASE("a case that does not end is ended, and told by its name; what it set is put back") {
+  const test::TemporaryDirectory events;
+  const std::string program = (test::binaryDirectory() / "bin/project_tests").string();
+  const auto result = test::runCommand(
+      std::string(kAnew) + "LUMIVOX_TEST_WAITS=1 LUMIVOX_TEST_LIMIT=1 LUMIVOX_TEST_EVENTS='" +
+      events.path().string() + "' '" + program + "' 'a case of the next one*'");
+  CHECK(result.exitCode == 124);
+  std::string told;
+  for (const auto& entry : fs::directory_iterator(events.path())) told += readFile(entry.path());
+  CHECK(told.find("begin\tsetup: a case of the next one") == 0);
+  CHECK(told.find("end\ttime-out\t1\tsetup: a case of the next one") != std::string::npos);
+  // All shares together are all cases, each once.
+  std::multiset<std::string> shared, all;
+  const auto listed = [&](const std::string& variables, std::multiset<std::string>& names) {
+    std::istringstream lines(test::runCommand(kAnew + variables + " '" + program + "' --cases").output);
+    for (std::string line; std::getline(lines, line);) names.insert(line);
+  };
+  listed("", all);
+  for (const char* share : {"1/3", "2/3", "3/3"}) listed(std::string("LUMIVOX_TEST_SHARE=") + share, shared);
+  CHECK(all.size() > 50);
+  CHECK(shared == all);
 }

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/outputs.h"
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/page/page.h"
@@ -17,80 +19,163 @@
 namespace lumivox::command {
 namespace {
 
-/// Points for which there was no time, "scene, pipeline: cones=6" each, in a line for each pipeline.
-std::string leftOutText(const std::vector<std::string>& leftOut) {
-  std::vector<std::pair<std::string, std::string>> lines;
-  for (const std::string& one : leftOut) {
-    const std::size_t end = std::min(one.find(": "), one.size());
-    const std::string pipeline = one.substr(0, end);
-    const auto line = std::find_if(lines.begin(), lines.end(),
-                                   [&](const auto& candidate) { return candidate.first == pipeline; });
-    if (line == lines.end())
-      lines.emplace_back(pipeline, one);
-    else
-      line->second += ";" + one.substr(std::min(end + 1, one.size()));
-  }
-  std::string text;
-  for (const auto& [pipeline, line] : lines) text += "no time for: " + line + "\n";
-  return text.empty() ? text : text + "a longer --budget measures them too\n";
-}
-
-/// "12.5 % (1.0 of 8.0 ms)", or "nothing" where leaving out does not make a frame shorter.
-std::string savingText(double share, const TimingStatistics& pruned, const TimingStatistics& unpruned) {
-  if (!(share > 0.0)) return "nothing";
-  return fmt::format("{} ({} of {} ms)", formatPercent(share),
-                     formatMilliseconds(unpruned.median - pruned.median),
-                     formatMilliseconds(unpruned.median));
-}
-
 struct ReportCommand {
   MeasureOptions measure;
   std::vector<std::string> equalTimes, equalErrors;
   bool json = false, csv = false, brief = false;
 };
 
-void printSummary(const ReportSummary& summary) {
+/// The pipeline of a point; and of its parameters those in which its lines differ.
+std::vector<std::string> lineNames(const std::vector<ReportPoint>& points) {
+  std::vector<std::string> names;
+  for (const ReportPoint& point : points) {
+    std::map<std::string, std::string> differing;
+    for (const auto& [name, value] : point.parameters)
+      for (const ReportPoint& other : points) {
+        if (other.pipeline != point.pipeline || other.scene != point.scene) continue;
+        const auto there = other.parameters.find(name);
+        if (there == other.parameters.end() || there->second.text() != value.text())
+          differing[name] = value.text();
+      }
+    names.push_back(std::filesystem::path(point.pipeline).stem().string() +
+                    (differing.empty() ? "" : " " + parametersText(differing)));
+  }
+  return names;
+}
+
+/// "12.5 % (1.0 of 8.0 ms)", or empty where leaving out does not make a frame shorter.
+std::string savingText(double share, const TimingStatistics& pruned, const TimingStatistics& unpruned) {
+  if (!decidable(medianOf(unpruned), medianOf(pruned)) ||
+      !differ(medianOf(unpruned), medianOf(pruned), kSignificantTimeShare) || !(share > 0.0))
+    return {};
+  return fmt::format("{} ({} of {} ms)", formatPercent(share),
+                     formatMilliseconds(unpruned.median - pruned.median),
+                     formatMilliseconds(unpruned.median));
+}
+
+/// What the pipelines of a scene left out, in a sentence.
+std::string neededText(const std::vector<const PruningRecord*>& prunings) {
+  if (prunings.empty()) return "what it needs was not measured";
+  std::size_t kept = 0, all = 0;
+  std::uint64_t bytes = 0;
+  const PruningRecord* first = nullptr;
+  const PruningRecord* next = nullptr;
+  std::string changed;
+  for (const PruningRecord* one : prunings) {
+    kept += one->prunedPassBytes.size();
+    all += one->unprunedPassBytes.size();
+    bytes += one->unprunedBytes - std::min(one->prunedBytes, one->unprunedBytes);
+    if (one->prunedMs.repeats > 0 && (first == nullptr || one->savedShare() > first->savedShare()))
+      first = one;
+    if (one->prunedMs.repeats > 0 && (next == nullptr || one->savedShareNext() > next->savedShareNext()))
+      next = one;
+    if (!one->sameImage) changed += " " + std::filesystem::path(one->pipeline).stem().string();
+  }
+  const auto saved = [](const PruningRecord& one, const std::string& text, const char* of) {
+    return text.empty() ? std::string()
+                        : fmt::format(", up to {} of {} ({})", text, of,
+                                      std::filesystem::path(one.pipeline).stem().string());
+  };
+  const std::string those = fmt::format("{} pipeline{}", prunings.size(), prunings.size() == 1 ? "" : "s");
+  if (kept == all && bytes == 0) return fmt::format("all {} passes of {} are needed", all, those);
+  std::string text = fmt::format("{} of {} passes of {} are needed; leaving out the rest saves {}", kept, all,
+                                 those, formatBytes(bytes));
+  if (first != nullptr)
+    text +=
+        saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
+  if (next != nullptr)
+    text += saved(*next, savingText(next->savedShareNext(), next->nextPrunedMs, next->nextUnprunedMs),
+                  "a later one");
+  return text + (changed.empty() ? " and changes no image by a bit" : " and CHANGES the image of" + changed);
+}
+
+/// Of a scene: the least error, the fastest, and which no other beats.
+std::string verdict(const std::vector<const ReportPoint*>& points, const std::vector<std::string>& names) {
+  const PipelineComparison comparison = comparePipelines(points, "final", false, kDefaultMetric, {});
+  if (comparison.points.empty()) return "no pipeline was judged\n";
+  const auto text = [&](const ComparedPoint& point) {
+    return fmt::format("{} ({} ms, FLIP {:.3g})", names[point.source],
+                       formatMilliseconds(point.frameMs.median), point.tradeOff.error.value);
+  };
+  const auto least = std::min_element(comparison.points.begin(), comparison.points.end(),
+                                      [](const ComparedPoint& a, const ComparedPoint& b) {
+                                        return a.tradeOff.error.value < b.tradeOff.error.value;
+                                      });
+  std::vector<std::string> front;
+  for (std::size_t i = 0; i < comparison.pipelines.size(); ++i)
+    if (comparison.hasFront(i))
+      front.push_back(std::filesystem::path(comparison.pipelines[i].pipeline).stem().string());
+  return fmt::format("least error: {}\nfastest: {}\nbeaten by none at their cost: {}\n", text(*least),
+                     text(comparison.points.front()), fmt::join(front, ", "));
+}
+
+void printSummary(const ReportSummary& summary, const ReportOptions& options) {
   std::vector<const ReportPoint*> points;
   for (const ReportPoint& point : summary.points) points.push_back(&point);
-  const std::vector<std::string> outputs = judgedOutputs(points);
+  const std::vector<std::string> names = lineNames(summary.points);
+  constexpr int kWide = 120;  // columns: room for each output
+  std::vector<std::string> outputs;
+  if (outputColumns() >= kWide)
+    for (const std::string& output : judgedOutputs(points))
+      if (output != kWholeImage) outputs.push_back(output);
 
-  std::vector<std::vector<std::string>> rows{{"Scene", "Pipeline", "Parameters", "Frame ms"}};
+  std::vector<std::vector<std::string>> rows{{"Scene", "Pipeline", "Frame ms", "FLIP", "Of black"}};
   for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
-  rows[0].push_back("Memory");
-  rows[0].push_back("Health");
-  for (const ReportPoint& point : summary.points) {
-    std::map<std::string, std::string> parameters;
-    for (const auto& [name, value] : point.parameters) parameters[name] = value.text();
-    std::vector<std::string> row{std::filesystem::path(point.scene).stem().string(),
-                                 std::filesystem::path(point.pipeline).stem().string(),
-                                 parametersText(parameters), quartilesText(point.frameMs)};
-    for (const std::string& output : outputs)
-      row.push_back(errorText(errorOf(point, output, output != kWholeImage)));
-    row.push_back(formatBytes(point.peakBytes));
-    row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed")
-                  : point.healthFindings.empty() ? painted(Paint::good, "good")
-                                                 : fmt::format("{} findings", point.healthFindings.size()));
+  if (!outputs.empty()) rows[0].push_back("Memory");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ReportPoint& point = *points[i];
+    std::vector<std::string> row{std::filesystem::path(point.scene).stem().string(), names[i],
+                                 point.frameMs.repeats == 0 ? "-" : formatMilliseconds(point.frameMs.median)};
+    const ComponentError* whole = errorOf(point, kWholeImage, false);
+    if (!point.failure.empty())
+      row.push_back(painted(Paint::bad, "failed"));
+    else
+      row.push_back(errorText(whole));
+    row.push_back(whole == nullptr ? "" : fmt::format("{:.2g}", whole->ratioToNothing()));
+    for (const std::string& output : outputs) row.push_back(errorText(errorOf(point, output, true)));
+    if (!outputs.empty()) row.push_back(formatBytes(point.peakBytes));
     rows.push_back(std::move(row));
   }
-  std::string table = groupedTable(rows, 2), text = kErrorNote;
-  for (const PruningRecord& pruning : summary.pruning)
-    text += fmt::format(
-        "{}, {}: leaving out what the scene does not need saves {} of a first frame and {} of the next ones with a "
-        "moving camera; same image: {}\n",
-        std::filesystem::path(pruning.scene).stem().string(),
-        std::filesystem::path(pruning.pipeline).stem().string(),
-        savingText(pruning.savedShare(), pruning.prunedMs, pruning.unprunedMs),
-        savingText(pruning.savedShareNext(), pruning.nextPrunedMs, pruning.nextUnprunedMs),
-        pruning.sameImage ? "yes" : "NO");
-  for (const auto& [scene, display] : summary.displays)
-    text += fmt::format("{}: images, SSIM and LDR-FLIP at {}, tone {}\n",
-                        std::filesystem::path(scene).stem().string(), exposureText(display.exposure),
-                        name(display.tone));
+  std::string table = groupedTable(rows, 1), text;
+  text +=
+      "FLIP: HDR-FLIP of the whole image against full transport: 0 where a viewer sees no difference, below "
+      "0.1 next to none, 1 at most; ± one standard uncertainty. Of black: RMSE over that of no light at "
+      "all.\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i]->failure.empty()) text += fmt::format("{} failed: {}\n", names[i], points[i]->failure);
+    if (!points[i]->healthFindings.empty())
+      text += fmt::format("{}: {} findings of NaN, infinite or negative values, the first: {}\n", names[i],
+                          points[i]->healthFindings.size(), points[i]->healthFindings.front());
+  }
+  for (const auto& [scene, display] : summary.displays) {
+    std::vector<const PruningRecord*> prunings;
+    for (const PruningRecord& one : summary.pruning)
+      if (one.scene == scene) prunings.push_back(&one);
+    const std::string place = std::filesystem::path(scene).stem().string();
+    text += fmt::format("{}: images, SSIM and LDR-FLIP at {}, tone {}\n{}: {}\n", place,
+                        exposureText(display.exposure), name(display.tone), place, neededText(prunings));
+  }
   if (summary.takenUp > 0)
-    text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
+    text += fmt::format("{} of {} points were taken up from an earlier run\n", summary.takenUp,
                         summary.points.size());
-  text += leftOutText(summary.leftOutPoints);
-  for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
+  if (!summary.unsuited.empty())
+    text += fmt::format("{} pipeline{} do not suit: {}\n", summary.unsuited.size(),
+                        summary.unsuited.size() == 1 ? "" : "s", fmt::join(summary.unsuited, "; "));
+  if (summary.leftOutPoints > 0)
+    text += fmt::format("no time for {} point{}; the same command goes on with them: {}\n",
+                        summary.leftOutPoints, summary.leftOutPoints == 1 ? "" : "s", options.commandLine);
+  else if (summary.leftOutPrunings > 0)
+    text += fmt::format("no time to time what leaving out saves, of {} pipelines\n", summary.leftOutPrunings);
+  std::set<std::string> scenes;
+  for (const ReportPoint* point : points) scenes.insert(point->scene);
+  for (const std::string& scene : scenes) {
+    std::vector<const ReportPoint*> own;
+    std::vector<std::string> ownNames;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i]->scene == scene) own.push_back(points[i]), ownNames.push_back(names[i]);
+    if (scenes.size() > 1) text += std::filesystem::path(scene).stem().string() + ":\n";
+    text += verdict(own, ownNames);
+  }
   print(table + remarks(text));
 }
 
@@ -124,7 +209,7 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   } else if (command.csv) {
     print(readFile(files.csv));
   } else {
-    printSummary(summary);
+    printSummary(summary, options);
     print(files.page.string() + "\n");
   }
   const bool good = std::all_of(summary.points.begin(), summary.points.end(), [](const ReportPoint& point) {
@@ -144,8 +229,8 @@ void addReportCommand(Commands& commands) {
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
   addDuration(
       *command, "--budget", all->measure.options.budgetSeconds,
-      "time for measuring, such as 30s or 5min, counted when the references are there: all default points, "
-      "then as many points of the sweeps as there is time for (default: no limit)");
+      "time for measuring, such as 30s or 5min, counted when the references are there: a point for each "
+      "technique first, then what else there is time for; the same command goes on (default: no limit)");
   all->measure.display.addToneTo(*command);
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,

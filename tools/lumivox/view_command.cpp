@@ -24,7 +24,8 @@ int view(std::vector<std::string> words) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(program, ignored))
     throw AbsentError(fmt::format(
-        "{} is not there: this Lumivox was built without its window (`lumivox render` makes images without one)",
+        "{} is not there: this Lumivox was built without its window (`./run view` builds it; `lumivox render` makes "
+        "images without one)",
         program.string()));
   words.insert(words.begin(), program.string());
   std::vector<char*> pointers;

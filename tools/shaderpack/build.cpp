@@ -368,7 +368,7 @@ class CodeTable {
   std::size_t add(const Artifact& artifact) {
     const ContentHash hash = Hasher().add(artifact.spirv).finish();
     const auto [known, isNew] = index_.emplace(hash, codes_.size());
-    if (isNew) codes_.push_back(shader::PackedCode::of(hash, artifact.spirv, artifact.glsl));
+    if (isNew) codes_.push_back(shader::PackedCode::of(hash, artifact.spirv));
     return known->second;
   }
 

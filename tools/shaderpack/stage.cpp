@@ -8,7 +8,6 @@
 
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
-#include <spirv_cross/spirv_glsl.hpp>
 #include <sstream>
 
 #include "lumivox/base/error.h"
@@ -18,7 +17,7 @@ namespace lumivox::shaderpack {
 namespace {
 
 // Counts up whenever this program makes something else of the same source.
-constexpr int kArtifactVersion = 6;
+constexpr int kArtifactVersion = 8;
 
 // Line numbers follow from "#line N "file"" directives, which need this extension.
 constexpr const char* kPreamble =
@@ -128,6 +127,7 @@ std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, con
         if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
       });
   optimizer.RegisterPerformancePasses();
+  optimizer.RegisterPass(spvtools::CreateCompactIdsPass());  // small numbers deflate better
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // validated below, after optimisation
   std::vector<std::uint32_t> optimised;
@@ -144,20 +144,6 @@ void validate(const std::vector<std::uint32_t>& words, const StageSource& source
         if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
       });
   if (!tools.Validate(words)) failStage(source, "the SPIR-V is not valid for OpenGL 4.5:" + problems);
-}
-
-std::string toGlsl(const std::vector<std::uint32_t>& words, const StageSource& source) {
-  try {
-    spirv_cross::CompilerGLSL compiler(words);
-    spirv_cross::CompilerGLSL::Options options;
-    options.version = 450;
-    options.es = false;
-    options.separate_shader_objects = false;
-    compiler.set_common_options(options);
-    return compiler.compile();
-  } catch (const spirv_cross::CompilerError& error) {
-    failStage(source, fmt::format("SPIRV-Cross cannot write it as GLSL: {}", error.what()));
-  }
 }
 
 }  // namespace
@@ -182,7 +168,6 @@ Artifact compileStage(const StageSource& source) {
   artifact.spirv = optimise(lowerToPlainArithmetic(declared), source);
   validate(artifact.spirv, source);
   requireDerivativesBeforeDiscard(artifact.spirv, source);  // the optimiser moves code
-  artifact.glsl = toGlsl(artifact.spirv, source);
   reflect(declared, artifact.spirv, source, artifact);
   return artifact;
 }
@@ -195,7 +180,6 @@ namespace {
 template <class Archive, class SomeArtifact>
 void exchange(Archive& archive, SomeArtifact& a) {
   archive.value(a.spirv);
-  archive.value(a.glsl);
   archive.each(a.bindings, [&](auto& b) {
     archive.value(b.name);
     archive.value(b.kind);

@@ -37,7 +37,6 @@ struct StageVariable {
 
 struct Artifact {
   std::vector<std::uint32_t> spirv;
-  std::string glsl;
   std::vector<shader::PackedBinding> bindings;  ///< as declared
   std::vector<std::string>
       layouts;  ///< per binding: offsets and types of a block's members; empty for textures

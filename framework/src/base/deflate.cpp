@@ -22,7 +22,12 @@ std::string zlibStream(std::string_view bytes, int level) {
 Deflated Deflated::of(std::string_view bytes) {
   // Measured on the committed shaders: level 12 makes them a twentieth smaller in ten times the time.
   constexpr int kLevel = 8;
-  return {zlibStream(bytes, kLevel), bytes.size()};
+  return ofStream(zlibStream(bytes, kLevel), bytes.size());
+}
+
+Deflated Deflated::ofStream(std::string stream, std::uint64_t expandedBytes) {
+  auto holder = std::make_shared<const std::string>(std::move(stream));
+  return {*holder, expandedBytes, std::move(holder)};
 }
 
 std::string Deflated::expanded() const {

@@ -19,6 +19,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "base/file_set.h"
@@ -55,25 +56,35 @@ const char* kindOf(mode_t mode) {
   return "no regular file";
 }
 
-/// The files that this process has read, by device and inode.
+/// The files that this process has read, by device, inode and, where the system tells it, when they were
+/// made: the inode of a file that is gone is given to another one.
 class ReadFiles {
  public:
-  void add(const struct stat& status) {
+  void add(const struct stat& status, const std::filesystem::path& path) {
     const std::lock_guard lock(mutex_);
-    files_.emplace(status.st_dev, status.st_ino);
+    files_.insert(identityOf(status, path));
   }
-  void remove(const struct stat& status) {
+  void remove(const struct stat& status, const std::filesystem::path& path) {
     const std::lock_guard lock(mutex_);
-    files_.erase({status.st_dev, status.st_ino});
+    files_.erase(identityOf(status, path));
   }
-  bool contains(const struct stat& status) {
+  bool contains(const struct stat& status, const std::filesystem::path& path) {
     const std::lock_guard lock(mutex_);
-    return files_.count({status.st_dev, status.st_ino}) > 0;
+    return files_.count(identityOf(status, path)) > 0;
   }
 
  private:
+  using Identity = std::tuple<dev_t, ino_t, std::int64_t, std::uint32_t>;
+  static Identity identityOf(const struct stat& status, const std::filesystem::path& path) {
+    struct statx more {};
+    const bool told =
+        statx(AT_FDCWD, path.c_str(), 0, STATX_BTIME, &more) == 0 && (more.stx_mask & STATX_BTIME) != 0;
+    return {status.st_dev, status.st_ino, told ? more.stx_btime.tv_sec : 0,
+            told ? more.stx_btime.tv_nsec : 0};
+  }
+
   std::mutex mutex_;
-  std::set<std::pair<dev_t, ino_t>> files_;
+  std::set<Identity> files_;
 };
 ReadFiles& filesRead() {
   static ReadFiles files;
@@ -89,7 +100,7 @@ Descriptor openRegular(const std::filesystem::path& path, struct stat& status) {
   if (!S_ISREG(status.st_mode)) {
     throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
   }
-  filesRead().add(status);
+  filesRead().add(status, path);
   return file;
 }
 
@@ -262,7 +273,7 @@ class StagedFile {
     beside_.clear();
     // It may have the number of a file that was read and is gone.
     struct stat status {};
-    if (stat(target_.path.c_str(), &status) == 0) filesRead().remove(status);
+    if (stat(target_.path.c_str(), &status) == 0) filesRead().remove(status, target_.path);
   }
 
  private:
@@ -322,13 +333,13 @@ std::string readFileStart(const std::filesystem::path& path, std::uint64_t limit
 void requireRegularFile(const std::filesystem::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return;
-  if (S_ISREG(status.st_mode)) return filesRead().add(status);
+  if (S_ISREG(status.st_mode)) return filesRead().add(status, path);
   throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
 }
 
 bool wasRead(const std::filesystem::path& path) {
   struct stat status {};
-  return stat(path.c_str(), &status) == 0 && filesRead().contains(status);
+  return stat(path.c_str(), &status) == 0 && filesRead().contains(status, path);
 }
 
 std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t limitBytes) {

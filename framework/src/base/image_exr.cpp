@@ -316,6 +316,27 @@ std::map<std::string, std::string> attributesOf(const LayeredImage& image) {
   return result;
 }
 
+/// Of the first header, which begins behind the format's number and version: no attribute reaches beyond the
+/// end of the file. OpenEXR asks for as much memory as one says.
+void requireAttributesWithin(std::string_view bytes) {
+  std::size_t at = 8;
+  const auto word = [&] {
+    const std::size_t end = std::min(bytes.find('\0', at), bytes.size());
+    const std::string_view text = bytes.substr(std::min(at, end), end - std::min(at, end));
+    at = end + 1;
+    return text;
+  };
+  for (std::string_view name = word(); !name.empty(); name = word()) {
+    word();  // its type
+    std::int32_t size = -1;
+    if (at + sizeof(size) <= bytes.size()) std::memcpy(&size, bytes.data() + at, sizeof(size));
+    at += sizeof(size);
+    if (size < 0 || at + static_cast<std::size_t>(size) > bytes.size())
+      throw Error(fmt::format("is damaged: its attribute '{}' goes on beyond the end", name.substr(0, 64)));
+    at += static_cast<std::size_t>(size);
+  }
+}
+
 }  // namespace
 
 LayeredImage readExr(const std::filesystem::path& path) {
@@ -353,6 +374,7 @@ std::map<std::string, std::string> readExrAttributes(const std::filesystem::path
     char begin[8];  // the format's number and its version
     stream.read(begin, sizeof(begin));
     if (!Imf::isImfMagic(begin)) throw Error("is not an OpenEXR image");
+    requireAttributesWithin(bytes);
     int version = static_cast<unsigned char>(begin[4]) | static_cast<unsigned char>(begin[5]) << 8 |
                   static_cast<unsigned char>(begin[6]) << 16 | static_cast<unsigned char>(begin[7]) << 24;
     Imf::Header header;

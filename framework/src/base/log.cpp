@@ -27,7 +27,7 @@ std::string* captured = nullptr;
 std::string statusLine;
 bool statusOnScreen = false;
 /// Warnings as they are written, in the order in which they came first, and where each stands in that order.
-std::vector<std::pair<std::string, std::uint64_t>> told;
+std::vector<std::pair<std::string, std::uint64_t>> toldWarnings;
 std::unordered_map<std::string, std::size_t> toldAt;
 thread_local WarningCollector* collector = nullptr;
 
@@ -46,11 +46,11 @@ void drawStatus() {
 
 /// Whether the warning is told for the first time.
 bool isNews(const std::string& warning) {
-  const auto [at, isNew] = toldAt.emplace(warning, told.size());
+  const auto [at, isNew] = toldAt.emplace(warning, toldWarnings.size());
   if (isNew)
-    told.emplace_back(warning, 1);
+    toldWarnings.emplace_back(warning, 1);
   else
-    ++told[at->second].second;
+    ++toldWarnings[at->second].second;
   return isNew;
 }
 
@@ -107,9 +107,9 @@ void logFinding(const Diagnostic& finding) {
 void logRepeatedWarnings() {
   const std::lock_guard lock(outputMutex);
   // The lines that show the place were shown the first time.
-  for (const auto& [text, times] : told)
+  for (const auto& [text, times] : toldWarnings)
     if (times > 1) writeLine(fmt::format("{} ({} times)", text.substr(0, text.find('\n')), times));
-  told.clear();
+  toldWarnings.clear();
   toldAt.clear();
 }
 

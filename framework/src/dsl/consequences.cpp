@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace lumivox::dsl {
 
@@ -21,7 +22,11 @@ void dropConsequences(const Document& document, std::vector<Diagnostic>& finding
     return (doubtful != doubts.from.end() && finding.place.line >= doubtful->second) ||
            std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) { return isAt(finding, other); });
   };
-  findings.erase(std::remove_if(findings.begin(), findings.end(), follows), findings.end());
+  std::vector<Diagnostic> kept;
+  std::remove_copy_if(findings.begin(), findings.end(), std::back_inserter(kept), follows);
+  // Two may each seem to follow from the other: a wrong text keeps a finding at least.
+  if (kept.empty() && !findings.empty()) kept.push_back(findings.front());
+  findings = std::move(kept);
 }
 
 void reportOutside(const Document& document, const Item& item, const std::string& block,

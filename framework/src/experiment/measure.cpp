@@ -129,7 +129,7 @@ std::string whyFailed(const std::function<void()>& work) {
 }
 
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
-                           int frameIndex, int frames) {
+                           int frameIndex, int frames, FrameResult* apart) {
   // The reference is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
   // area lights would outweigh every other error. The image plane is shifted by the fraction of a pixel: a
   // camera that turns by it would shift pixels away from the centre of the image further.
@@ -151,16 +151,25 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
     FrameResult frame = executor.render(shifted, frameIndex + frames - 1);
     if (position == 0) {
       sum = std::move(frame);
+      if (apart != nullptr) *apart = sum;
       continue;
     }
+    // The outer positions against the inner ones: both halves lie around the centre.
+    const bool outer = 4 * position < count || 4 * position >= 3 * count;
     if (sum.healthFindings.empty()) sum.healthFindings = std::move(frame.healthFindings);
     for (auto& [name, image] : sum.outputs) {
       const std::vector<float>& added = frame.outputs.at(name).values();
       for (std::size_t i = 0; i < added.size(); ++i) image.values()[i] += added[i];
+      if (apart == nullptr) continue;
+      std::vector<float>& difference = apart->outputs.at(name).values();
+      for (std::size_t i = 0; i < added.size(); ++i) difference[i] += outer ? added[i] : -added[i];
     }
   }
-  for (auto& [name, image] : sum.outputs)
-    for (float& value : image.values()) value /= static_cast<float>(count);
+  for (FrameResult* result : {&sum, apart}) {
+    if (result == nullptr) continue;
+    for (auto& [name, image] : result->outputs)
+      for (float& value : image.values()) value /= static_cast<float>(count);
+  }
   return sum;
 }
 
@@ -193,30 +202,194 @@ bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques) {
   });
 }
 
+namespace {
+
+double rootMeanSquare(const std::vector<float>& values, const std::vector<float>* subtracted = nullptr) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i] - (subtracted != nullptr ? (*subtracted)[i] : 0.0f);
+    sum += value * value;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
+/// The image of an output that others add up to; null where there is none, or they do not.
+bool addsUp(const FrameResult& frame) {
+  FrameResult parts = frame;
+  for (const auto& [name, component] : frame.components)
+    if (component == Contributes::final || name == "final") parts.outputs.erase(name);
+  const ImageBuffer whole = compositeImage(frame), sum = compositeImage(parts);
+  if (whole.empty() || !whole.sameShape(sum)) return false;
+  constexpr double kRounding = 1e-5;
+  return rootMeanSquare(sum.values(), &whole.values()) <= kRounding * rootMeanSquare(whole.values());
+}
+
+/// Makes the images of one seed that errors are taken of: means over positions in the pixel. A look at a few
+/// is enough for most outputs; it is too little where silhouettes are most of the error, which is so of
+/// direct light. Those alone are rendered at all positions, and what they are a part of is added up anew.
+class JudgedImages {
+ public:
+  JudgedImages(const MeasureContext& context, const Pipeline& pipeline, const RenderOptions& options,
+               ReportPoint& point)
+      : context_(context),
+        pipeline_(pipeline),
+        options_(options),
+        point_(point),
+        all_(context.device, context.techniques, context.scene, pipeline, options) {
+    const int asked = std::max(1, context.options.subpixels);
+    point.subpixels = asked > 2 * kLook ? kLook : asked;
+    for (const auto& [output, bounces] : bouncesOf(all_)) context.reference.require(bounces);
+  }
+
+  const PipelineExecutor& executor() const { return all_; }
+  /// What more positions would add to an error of an output, or take from it, as a share of it; `rmse`: that
+  /// error as an RMSE. What is left of edges is independent of the error, so that squares add up.
+  double leftShare(const std::string& output, double rmse) const {
+    const auto left = left_.find(output);
+    return left == left_.end() || !(rmse > 0.0) ? 0.0 : 0.5 * left->second * left->second / (rmse * rmse);
+  }
+
+  /// Whether two seeds give images that differ in a bit, by one frame of each.
+  bool differ(std::uint64_t one, std::uint64_t other) {
+    const SceneSnapshot centre = snapshotAt(context_, options_, context_.options.time);
+    std::vector<Judged> images;
+    for (const std::uint64_t seed : {one, other}) {
+      all_.setSeed(seed);
+      all_.setHealth(false);
+      const Measuring measuring(point_, "images");
+      collectOutputs(images, all_, renderFiltered(all_, centre, 1, 0, framesOf(point_.parameters)));
+    }
+    return !std::all_of(images.begin(), images.end(), sameInEverySeed);
+  }
+
+  FrameResult render(std::uint64_t seed, bool health) {
+    all_.setSeed(seed);
+    all_.setHealth(health);
+    FrameResult apart, frame = rendered(all_, point_.subpixels, &apart);
+    if (!std::exchange(looked_, true) && choose(frame, apart))
+      frame = rendered(all_, point_.subpixels, nullptr);
+    if (!some_) return frame;
+    some_->setSeed(seed);
+    FrameResult finer = rendered(*some_, context_.options.subpixels, nullptr);
+    for (auto& [name, image] : finer.outputs) frame.outputs[name] = std::move(image);
+    for (const auto& [name, component] : frame.components)
+      if (component == Contributes::final || name == "final") frame.outputs.erase(name);
+    return frame;
+  }
+
+ private:
+  static constexpr int kLook = 4;
+
+  FrameResult rendered(PipelineExecutor& executor, int positions, FrameResult* apart) {
+    const Measuring images(point_, "images");
+    return renderFiltered(executor, snapshotAt(context_, options_, context_.options.time), positions, 0,
+                          framesOf(point_.parameters), apart);
+  }
+
+  /// By the first look: how the images of every seed are made. True: at all positions, this one too.
+  bool choose(const FrameResult& mean, const FrameResult& apart) {
+    if (point_.subpixels == std::max(1, context_.options.subpixels)) return false;
+    const std::vector<std::string> open = unsettled(mean, apart);
+    if (open.empty()) return false;
+    std::vector<std::string> parts;
+    for (const std::string& name : open)
+      if (name != kWholeImage) parts.push_back(name);
+    if (parts.empty() || !addsUp(mean)) {
+      point_.subpixels = context_.options.subpixels;
+      left_.clear();
+      return true;
+    }
+    RenderOptions options = options_;
+    options.wanted = parts;
+    FrameResult rest = apart;
+    for (const std::string& name : parts) {
+      std::fill(rest.outputs.at(name).values().begin(), rest.outputs.at(name).values().end(), 0.0f);
+      left_.erase(name);
+    }
+    for (const auto& [name, component] : apart.components)
+      if (component == Contributes::final || name == "final") rest.outputs.erase(name);
+    left_[kWholeImage] = rootMeanSquare(compositeImage(rest).values());
+    some_.emplace(context_.device, context_.techniques, context_.scene, pipeline_, options);
+    return false;
+  }
+
+  /// Outputs that more positions would move by more than kSettled of their error: half the difference between
+  /// the means of the outer and the inner positions bounds what is left of edges in the mean of them all.
+  std::vector<std::string> unsettled(const FrameResult& mean, const FrameResult& apart) {
+    constexpr double kSettled = 0.3;  // an RMSE is 5 % too large at most; measured: 2 %
+    std::vector<Judged> images, differences;
+    collectOutputs(images, all_, mean);
+    collectOutputs(differences, all_, apart);
+    const std::map<std::string, int> bounces = bouncesOf(all_);
+    std::vector<std::string> open;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const std::string layer = referenceLayers(images[i].component, bounces.at(images[i].output)).first;
+      const ReferenceLayer* reference = context_.reference.layer(layer);
+      const ImageBuffer& image = images[i].seeds.front();
+      if (reference == nullptr || !reference->mean.sameShape(image)) continue;  // told where errors are taken
+      const double moves = rootMeanSquare(differences[i].seeds.front().values());
+      left_[images[i].output] = moves;
+      // What is not finite is not settled.
+      if (!(moves <= kSettled * rootMeanSquare(image.values(), &reference->mean.values())))
+        open.push_back(images[i].output);
+    }
+    return open;
+  }
+
+  const MeasureContext& context_;
+  const Pipeline& pipeline_;
+  RenderOptions options_;
+  ReportPoint& point_;
+  PipelineExecutor all_;
+  std::optional<PipelineExecutor> some_;  ///< of the outputs that need all positions
+  std::map<std::string, double> left_;    ///< by output, RMS that more positions would move its image by
+  bool looked_ = false;
+};
+
+}  // namespace
+
+namespace {
+
+/// Adds to the uncertainties of what grows with the error that it may be off by this share.
+void widen(ImageError& error, double share) {
+  const auto add = [share](double& uncertainty, double value) {
+    uncertainty = std::hypot(uncertainty, share * value);
+  };
+  add(error.rmse.uncertainty, error.rmse.value);
+  add(error.relativeMse.uncertainty, 2.0 * error.relativeMse.value);
+  add(error.percentile95Uncertainty, error.percentile95);
+  add(error.ssimUncertainty, 1.0 - error.ssim);
+  add(error.flipUncertainty, error.flip);
+  add(error.flipLdrUncertainty, error.flipLdr);
+}
+
+}  // namespace
+
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
   RenderOptions options = renderOptionsOf(context, record.point);
   options.interactive = true;
-  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+  JudgedImages source(context, pipeline, options, record.point);
+  const PipelineExecutor& executor = source.executor();
   std::vector<Judged> judged;
-  const auto sameInAll = [&] { return std::all_of(judged.begin(), judged.end(), sameInEverySeed); };
+  const std::uint64_t first = context.options.seed;
+  bool deterministic = false;
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
-    executor.setSeed(context.options.seed + static_cast<std::uint64_t>(seed));
-    executor.setHealth(seed == 0);
-    FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
-                                       context.options.subpixels, 0, framesOf(record.point.parameters));
+    // Where nobody asks for the seed, or a second one gives the same bits, more would only cost time.
+    if (seed == 1) deterministic = !executor.readsSeed() || !source.differ(first, first + 1);
+    if (seed > 0 && deterministic) break;
+    FrameResult frame = source.render(first + static_cast<std::uint64_t>(seed), seed == 0);
     if (seed == 0) {
       record.point.healthFindings = frame.healthFindings;
       record.point.notes = frame.notes;
     }
     collectOutputs(judged, executor, std::move(frame));
-    // Nobody asks for the seed; or two seeds give the same bits, after which more would only cost time.
-    if (!executor.readsSeed() || (seed == 1 && sameInAll())) break;
   }
+  const Measuring errors(record.point, "errors");
   const std::map<std::string, int> bounces = bouncesOf(executor);
   for (Judged& one : judged)
-    one.deterministic = !executor.readsSeed() || (one.seeds.size() > 1 && sameInEverySeed(one));
+    one.deterministic =
+        deterministic || !executor.readsSeed() || (one.seeds.size() > 1 && sameInEverySeed(one));
 
-  for (const auto& [output, count] : bounces) context.reference.require(count);
   for (const Judged& one : judged) {
     const auto [biasLayer, missLayer] = referenceLayers(one.component, bounces.at(one.output));
     OutputImages images;
@@ -234,6 +407,7 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
             layer, reference->mean.width(), reference->mean.height(), reference->mean.channels()));
       ImageBuffer flipMap;
       ComponentError error = errorAgainst(one, context.reference, layer, bias, flipMap);
+      widen(error.error, source.leftShare(one.output, error.error.rmse.value));
       images.against.push_back({layer, encodePng(falseColour(flipMap)), error.error.flip});
       record.point.errors.push_back(std::move(error));
     }
@@ -255,7 +429,7 @@ std::vector<Judged> sequenceOf(const MeasureContext& context, const Pipeline& pi
     collectOutputs(
         judged, executor,
         renderFiltered(executor, snapshotAt(context, options, context.options.time + frame * kFlickerStep),
-                       context.options.subpixels, frame));
+                       point.subpixels > 0 ? point.subpixels : context.options.subpixels, frame));
   return judged;
 }
 
@@ -274,6 +448,7 @@ Measured flickerAgainst(const MeasureContext& context, const std::vector<ImageBu
 
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
   if (record.point.errors.empty() || !flickers(context.scene, context.options)) return;
+  const Measuring measuring(record.point, "flicker");
   int seeds = 0;  // as many as differ
   for (const ComponentError& error : record.point.errors)
     seeds = std::max(seeds, error.deterministic ? 1 : error.seeds);
@@ -299,6 +474,7 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
 
 void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                const KeptOutputs& kept) {
+  const Measuring measuring(point, "work");
   RenderOptions options = renderOptionsOf(context, point);
   options.countWork = true;
   try {
@@ -366,7 +542,10 @@ struct TimedPoint::State {
 TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                        const KeptOutputs& kept)
     : state_(std::make_unique<State>(context, pipeline, point, kept)) {
-  const FrameResult frame = state_->warmUp();
+  const FrameResult frame = [&] {
+    const Measuring measuring(point, "warm-up");
+    return state_->warmUp();
+  }();
   point.peakBytes = frame.peakBytes;
   point.passOrder.clear();  // of an attempt that failed
   for (const PassRecord& pass : frame.passes) {
@@ -388,28 +567,41 @@ constexpr double kNextFrame = 1.0 / 60.0;  // s
 
 void TimedPoint::timeFrame() {
   State& s = *state_;
+  const Measuring measuring(s.point, "frames");
   const auto [milliseconds, first] = s.fromNothing(PipelineExecutor::Timing::frame);
   s.frameMs.push_back(milliseconds);
   if (first.frameMs > 0.0) s.shares.push_back(first.betweenPassesMs / first.frameMs);
   for (const PassRecord& pass : first.passes) s.hostMs[pass.name].push_back(pass.hostMs);
-  // The passes in frames of their own: their instruments are no part of the frame's time.
-  s.fromNothing(PipelineExecutor::Timing::passes);
+  // The passes in frames of their own: their instruments are no part of the frame's time. How a frame is
+  // shared out among them differs less from frame to frame than its time does.
+  if (s.frameMs.size() <= kLeastRepeats) s.fromNothing(PipelineExecutor::Timing::passes);
+}
+
+bool TimedPoint::isSettled() const {
+  constexpr double kSpread = 0.03;  // of the median, between the quartiles
+  const State& s = *state_;
+  if (s.frameMs.size() < kLeastRepeats) return false;
+  const TimingStatistics statistics = statisticsOf(s.frameMs);
+  return statistics.upperQuartile - statistics.lowerQuartile <= kSpread * statistics.median;
 }
 
 void TimedPoint::timeNextFrame() {
   State& s = *state_;
+  const Measuring measuring(s.point, "next frames");
   s.now += kNextFrame;
   s.nextMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Images::no).frameMs);
 }
 
 void TimedPoint::timeStillFrame() {
   State& s = *state_;
+  const Measuring measuring(s.point, "still frames");
   s.stillMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Images::no).frameMs);
 }
 
 void TimedPoint::timeMovedFrame() {
   constexpr float kStride = 1e-3f;  // of the scene
   State& s = *state_;
+  const Measuring measuring(s.point, "moved frames");
   if (!s.moving) {
     finish();  // what the executor still holds
     s.options.interactive = true;

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -67,6 +68,21 @@ struct MeasureContext : TimingContext {
   SceneReference& reference;
 };
 
+/// Adds to a point what a scope takes, s, by what it is for.
+class Measuring {
+ public:
+  Measuring(ReportPoint& point, const char* what) : seconds_(point.measuringSeconds[what]) {}
+  ~Measuring() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Measuring(const Measuring&) = delete;
+  Measuring& operator=(const Measuring&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 /// The options of frames that measure a point.
 RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& point);
 
@@ -74,8 +90,10 @@ RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& p
 /// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
 /// the result is the first frame's; health findings are those of the first frame that has some. At each
 /// position the image is that of the last of `frames` frames, of which the first knows nothing from before.
+/// `apart` becomes half the difference between the mean over the outer positions and that over the inner ones:
+/// what the mean over all may still be wrong by.
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
-                           int frameIndex = 0, int frames = 1);
+                           int frameIndex = 0, int frames = 1, FrameResult* apart = nullptr);
 
 /// How many indirect bounces each output of a pipeline models, by its name; kWholeImage: the most of them.
 std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);
@@ -107,6 +125,8 @@ class TimedPoint {
   ~TimedPoint();
   TimedPoint(TimedPoint&&) noexcept;
   void timeFrame();       ///< every kept pass runs; of a point of several frames all of them, from nothing
+  /// Its frames took the same time, as nearly as is told: further ones would say the same.
+  bool isSettled() const;
   void timeNextFrame();   ///< 1/60 s after the last one
   void timeStillFrame();  ///< at the same time as the last one, nothing moves
   /// The camera and every light have moved since the last one. The first call gives the resources of the

@@ -261,9 +261,29 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
   reference_.emplace(scene_, options, options_.exposure);
 }
 
+Measurer::Frame Measurer::frame(const WantedPoint& point) {
+  const MachineLock working(MachineLock::For::work);
+  const StoredRun run = open(point);
+  const TimingContext context{device_, techniques_, scene_, options_, width_, height_};
+  PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline,
+                            renderOptionsOf(context, run.point));
+  constexpr double kLongMs = 1000.0;  // beside it, what linking programs took is little
+  double milliseconds = executor.render(options_.time, 0, PipelineExecutor::Images::no).frameMs;
+  if (milliseconds < kLongMs) {
+    executor.invalidate();
+    milliseconds = executor.render(options_.time, 0, PipelineExecutor::Images::no).frameMs;
+  }
+  return {framesOf(run.point.parameters) * milliseconds / 1000.0, executor.readsSeed()};
+}
+
 double Measurer::secondsOf(const WantedPoint& point) const {
   const auto found = seconds_.find(key(point));
   return found == seconds_.end() ? 0.0 : found->second;
+}
+
+std::map<std::string, double> Measurer::partsOf(const WantedPoint& point) const {
+  const auto found = parts_.find(key(point));
+  return found == parts_.end() ? std::map<std::string, double>() : found->second;
 }
 
 bool Measurer::takeUp(Entry& entry) const {
@@ -288,9 +308,15 @@ void Measurer::measureUntimed(Entry& entry) {
     const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, reference()};
     measureErrors(context, entry.loaded->pipeline, record);
     measureFlicker(context, entry.loaded->pipeline, record);
-    countWork(context, entry.loaded->pipeline, record.point);
+    if (options_.budgetSeconds > 0.0)
+      record.point.whyNotCounted = "a frame of its own counts it, for which there is no time within a budget";
+    else
+      countWork(context, entry.loaded->pipeline, record.point);
     if (!voxelReferences_) voxelReferences_.emplace(scene_, options_.time, options_.camera, width_, height_);
-    judgeVoxels(context, entry.loaded->pipeline, *voxelReferences_, record.point);
+    {
+      const Measuring voxels(record.point, "voxels");
+      judgeVoxels(context, entry.loaded->pipeline, *voxelReferences_, record.point);
+    }
     entry.run.point = std::move(record.point);
     if (images_ == Images::kept) entry.images = storedImages(record.images);
   });
@@ -321,6 +347,17 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
   }
   const Clock::time_point start = Clock::now();
   timeTogether(batch);
+  for (const Entry& entry : batch) {
+    std::string parts;
+    double sum = 0.0;
+    parts_[entry.run.identity.key()] = entry.run.point.measuringSeconds;
+    for (const auto& [what, seconds] : entry.run.point.measuringSeconds) {
+      parts += fmt::format(", {} {:.2f}", what, seconds);
+      sum += seconds;
+    }
+    logDetails("{}: {:.2f} s, {:.1f} times its frame of {:.3f} s{}", runText(entry.run), sum,
+               1000.0 * sum / entry.run.point.frameMs.median, entry.run.point.frameMs.median / 1000.0, parts);
+  }
   // Each has as many frames as the others.
   double frames = 0.0;
   for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;

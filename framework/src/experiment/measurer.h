@@ -68,8 +68,17 @@ class Measurer {
   /// there.
   void makeReference(const std::vector<WantedPoint>& points);
   SceneReference& reference() { return reference_.value(); }
+  /// A frame of it in which everything runs, s, with no more care than a plan needs; and whether it asks for
+  /// random numbers, so that seeds are to be measured. Error when it fails.
+  struct Frame {
+    double seconds = 0.0;
+    bool readsSeed = false;
+  };
+  Frame frame(const WantedPoint& point);
   /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
   double secondsOf(const WantedPoint& point) const;
+  /// The same by what for; empty: it was not.
+  std::map<std::string, double> partsOf(const WantedPoint& point) const;
 
  private:
   /// The options of one run: of its seeds.
@@ -105,6 +114,7 @@ class Measurer {
   std::optional<SceneReference> reference_;
   std::optional<VoxelReferences> voxelReferences_;  ///< once a point needs them
   std::map<std::string, double> seconds_;           ///< by key
+  std::map<std::string, std::map<std::string, double>> parts_;
   InterruptionNote note_;
 };
 

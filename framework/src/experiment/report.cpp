@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <map>
 #include <set>
 
 #include "base/process.h"
@@ -43,10 +44,11 @@ class Budget {
   double spent() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  bool allows(double seconds) const { return seconds_ <= 0.0 || spent() + seconds <= seconds_; }
+  bool isLimited() const { return seconds_ > 0.0; }
+  bool allows(double seconds) const { return !isLimited() || spent() + seconds <= seconds_; }
   /// At most this long it goes on.
   double left(double seconds) const {
-    return seconds_ <= 0.0 ? seconds : std::clamp(seconds_ - spent(), 0.0, seconds);
+    return !isLimited() ? seconds : std::clamp(seconds_ - spent(), 0.0, seconds);
   }
 
  private:
@@ -99,15 +101,41 @@ class SceneReport {
   std::size_t missing() const { return count(State::missing); }
   std::size_t takenUp() const { return count(State::takenUp); }
 
-  void measureDefaults(const std::function<void(std::size_t)>& done) {
-    std::vector<Point*> defaults;
-    for (Point& point : points_)
-      if (point.state == State::missing && point.wanted.point.isDefault) defaults.push_back(&point);
-    measure(defaults, done);
+  /// Which default points: of the pipelines that have the name of a technique, which stand for it, or of the
+  /// others.
+  enum class Defaults { all, ofTechniques, others };
+
+  /// The default points, as long as there is time; in turns, a batch at once. False when none was measured.
+  bool measureDefaults(Defaults which, const Budget& budget, const std::function<void(std::size_t)>& done) {
+    std::vector<std::pair<double, Point*>> candidates;  // with what they are expected to take, s
+    double seconds = 0.0;
+    for (Point& point : points_) {
+      if (point.state != State::missing || !point.wanted.point.isDefault) continue;
+      if (which != Defaults::all && standsForTechnique(point) != (which == Defaults::ofTechniques)) continue;
+      // To know what a further one takes would take its time, too.
+      constexpr double kEnough = 0.5;
+      if (!budget.allows(which == Defaults::others ? seconds : 0.0) ||
+          (which == Defaults::others && budget.isLimited() && seconds > kEnough * budget.left(1e9)))
+        break;
+      candidates.emplace_back(budget.isLimited() ? expectedSeconds(point) : 0.0, &point);
+      if (budget.allows(seconds + candidates.back().first)) seconds += candidates.back().first;
+    }
+    // The cheapest first, so that there is soon something to see.
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Point*> batch;
+    seconds = 0.0;
+    for (const auto& [expected, point] : candidates) {
+      if (budget.isLimited() && (batch.size() == Measurer::kBatch || !budget.allows(seconds + expected)))
+        break;
+      seconds += expected;
+      batch.push_back(point);
+    }
+    measure(batch, done);
+    return !batch.empty();
   }
 
   /// Of each pipeline in turn the next point, as long as the time allows; false when nothing was left to do.
-  /// A point is expected to take as long as the longest of its pipeline's so far.
   bool measureMore(const Budget& budget, const std::function<void(std::size_t)>& done) {
     std::vector<Point*> batch;
     double seconds = 0.0;
@@ -119,7 +147,7 @@ class SceneReport {
             had.count(point.wanted.loaded) != 0 || batch.size() == Measurer::kBatch)
           continue;
         had.insert(point.wanted.loaded);
-        const double expected = secondsOf(*point.wanted.loaded);
+        const double expected = budget.isLimited() ? expectedSeconds(point) : 0.0;
         if (!budget.allows(seconds + expected)) continue;
         seconds += expected;
         batch.push_back(&point);
@@ -130,15 +158,19 @@ class SceneReport {
     return !batch.empty();
   }
 
-  /// With and without leaving out, of every pipeline whose default point works, as long as there is time.
-  void measurePrunings(const Budget& budget, const std::function<void()>& atWork) {
+  /// With and without leaving out, of every pipeline whose default point works, as long as there is time:
+  /// whether the images are the same and what memory it saves, or, timed, how much time too.
+  void measurePrunings(bool timed, const Budget& budget, const std::function<void()>& atWork) {
+    // Warm-ups of both; and of each three frames or more, whole and by passes, and those that follow.
+    const double frames = timed ? 25.0 : 4.0;
     for (const Point& point : points_) {
       atWork();
-      if (!point.wanted.point.isDefault || !works(point)) continue;
-      if (budget.allows(0.0))
-        measurePruning(*point.wanted.loaded);
-      else
-        leftOutPrunings_.push_back(point.wanted.loaded->shown);
+      const PruningRecord* known = pruningOf(*point.wanted.loaded);
+      if (!point.wanted.point.isDefault || !works(point) ||
+          (known != nullptr && (known->prunedMs.repeats > 0 || !timed)))
+        continue;
+      if (budget.allows(budget.isLimited() ? frames * frameOf(point).seconds : 0.0))
+        measurePruning(*point.wanted.loaded, timed ? options_.repeats : 0);
     }
   }
 
@@ -151,6 +183,7 @@ class SceneReport {
     if (!why.empty()) logWarning("{}: nothing could be timed twice: {}", shown_, why);
   }
 
+  /// As it stands now.
   SceneRecord record(const std::vector<PeakRate>& peakRates, const ResultsStore& controls) {
     const Scene& scene = measurer_.scene();
     SceneRecord record;
@@ -170,8 +203,13 @@ class SceneReport {
       else
         record.points.push_back(recordOf(point, peakRates));
     }
-    record.pruning = std::move(pruning_);
-    record.leftOutPrunings = std::move(leftOutPrunings_);
+    record.pruning = pruning_;
+    for (const Point& point : points_)
+      if (point.wanted.point.isDefault && works(point)) {
+        const PruningRecord* known = pruningOf(*point.wanted.loaded);
+        if (known == nullptr || known->prunedMs.repeats == 0)
+          record.leftOutPrunings.push_back(point.wanted.loaded->shown);
+      }
     if (!whyNoReference_.empty()) return record;
     record.referenceSeconds = measurer_.reference().seconds();
     record.referenceAttributes = measurer_.reference().layers().attributes;
@@ -204,12 +242,39 @@ class SceneReport {
     for (Point* point : some) point->state = State::measured;
   }
 
-  double secondsOf(const LoadedPipeline& loaded) const {
+  /// Whether its pipeline is that of a technique's own name.
+  bool standsForTechnique(const Point& point) const {
+    const Pipeline& pipeline = point.wanted.loaded->pipeline;
+    const std::vector<std::string> used = pipeline.techniques();
+    return std::find(used.begin(), used.end(), pipeline.file.stem().string()) != used.end();
+  }
+
+  /// A frame in which everything runs: of the pipeline's default point, which is rendered for it where it is
+  /// not measured yet. 0 s where that fails: what fails costs little, and its point says why.
+  const Measurer::Frame& frameOf(const Point& point) {
+    const bool isNew = !frames_.contains(point.wanted.loaded);
+    Measurer::Frame& frame = frames_[point.wanted.loaded];
+    if (isNew) whyFailed([&] { frame = measurer_.frame(point.wanted); });
+    return frame;
+  }
+
+  /// What a point is expected to take, s: as long as the longest of its pipeline's so far; before there is
+  /// one, by its frame (bench/point_cost).
+  double expectedSeconds(const Point& point) {
     double most = 0.0;
-    for (const Point& point : points_)
-      if (point.wanted.loaded == &loaded && point.state == State::measured)
-        most = std::max(most, measurer_.secondsOf(point.wanted));
-    return most;
+    for (const Point& other : points_)
+      if (other.wanted.loaded == point.wanted.loaded && other.state == State::measured)
+        most = std::max(most, measurer_.secondsOf(other.wanted));
+    if (most > 0.0) return most;
+    constexpr double kFrames = 14.0, kFramesWithSeeds = 24.0, kSeconds = 1.0;
+    const Measurer::Frame& frame = frameOf(point);
+    return (frame.readsSeed ? kFramesWithSeeds : kFrames) * frame.seconds + kSeconds;
+  }
+
+  const PruningRecord* pruningOf(const LoadedPipeline& loaded) const {
+    const auto found = std::find_if(pruning_.begin(), pruning_.end(),
+                                    [&](const PruningRecord& one) { return one.pipeline == loaded.shown; });
+    return found == pruning_.end() ? nullptr : &*found;
   }
 
   bool works(const Point& point) const {
@@ -218,21 +283,21 @@ class SceneReport {
     return run && run->point.failure.empty();
   }
 
-  void measurePruning(const LoadedPipeline& loaded) {
+  void measurePruning(const LoadedPipeline& loaded, int repeats) {
     RenderOptions renderOptions;
     renderOptions.parameters = loaded.settings;
     renderOptions.seed = options_.seed;
     renderOptions.camera = options_.camera;
     renderOptions.width = measurer_.width();
     renderOptions.height = measurer_.height();
-    logInformation("{}, {}: with and without leaving out", shown_, loaded.shown);
+    if (repeats > 0) logInformation("{}, {}: with and without leaving out", shown_, loaded.shown);
     const std::string why = whyFailed([&] {
       const MachineLock alone(MachineLock::For::timing);
-      PruningRecord pruning =
-          lumivox::measurePruning(device_, techniques_, measurer_.scene(), loaded.pipeline, renderOptions,
-                                  options_.time, options_.repeats);
+      PruningRecord pruning = lumivox::measurePruning(device_, techniques_, measurer_.scene(),
+                                                      loaded.pipeline, renderOptions, options_.time, repeats);
       pruning.scene = shown_;
       pruning.pipeline = loaded.shown;
+      std::erase_if(pruning_, [&](const PruningRecord& one) { return one.pipeline == loaded.shown; });
       pruning_.push_back(std::move(pruning));
     });
     if (!why.empty())
@@ -268,13 +333,15 @@ class SceneReport {
   Measurer measurer_;
   std::vector<Point> points_;  ///< in the order of the pipelines and their sweeps
   std::vector<PruningRecord> pruning_;
-  std::vector<std::string> leftOutPrunings_;  ///< pipelines
+  std::map<const LoadedPipeline*, Measurer::Frame> frames_;
 };
 
-/// Measures all scenes: the default points of all pipelines first, then what leaving out saves; sweeps share
-/// what is left of the time.
+/// Measures all scenes, and tells `published` whenever there is more to tell. Without a limit on time
+/// everything; else first a point for each technique and what each pipeline leaves out, then the other
+/// default points, the points of sweeps, and how much time leaving out saves. What would end too late is not
+/// begun.
 void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget,
-                results::UnfinishedStore& unfinished) {
+                results::UnfinishedStore& unfinished, const std::function<void()>& published) {
   std::size_t finished = 0, total = 0;
   for (const SceneReport& scene : scenes) total += scene.missing();
   const auto done = [&](std::size_t points) {
@@ -284,14 +351,32 @@ void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, c
     const double each = budget.spent() / static_cast<double>(finished);
     options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
   };
-  for (SceneReport& scene : scenes) scene.measureDefaults(done);
-  for (SceneReport& scene : scenes) scene.measurePrunings(budget, [&] { unfinished.renew(); });
+  const auto atWork = [&] { unfinished.renew(); };
+  using Defaults = SceneReport::Defaults;
+  const auto prune = [&](bool timed) {
+    for (SceneReport& scene : scenes) scene.measurePrunings(timed, budget, atWork);
+    published();
+  };
+  if (budget.isLimited()) {
+    for (const Defaults which : {Defaults::ofTechniques, Defaults::others}) {
+      for (SceneReport& scene : scenes)
+        while (scene.measureDefaults(which, budget, done)) published();
+      prune(false);
+    }
+  } else {
+    for (SceneReport& scene : scenes) scene.measureDefaults(Defaults::all, budget, done);
+    published();
+  }
+  // What leaving out saves in time is kept in no store: it must not take the time of points again and again.
+  if (!budget.isLimited()) prune(true);
   for (bool more = true; more;) {
     more = false;
     for (SceneReport& scene : scenes) more = scene.measureMore(budget, done) || more;
+    if (more) published();
   }
+  if (budget.isLimited()) prune(true);
   // Where time is short one point tells of the machine's mood.
-  for (SceneReport& scene : scenes) scene.control(options.budgetSeconds > 0.0 ? 1 : Measurer::kBatch);
+  for (SceneReport& scene : scenes) scene.control(budget.isLimited() ? 1 : Measurer::kBatch);
 }
 
 VoxelizerOptions voxelizerOptions(const ReportOptions& options, const SceneRecord& scene) {
@@ -362,33 +447,46 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     summary.takenUp += report.takenUp();
   }
   const Budget budget(options.budgetSeconds);
-  measureAll(reports, options, budget, unfinished);
-  data.measuringSeconds = budget.spent();
-  if (store) store->merge(checkpoint, unfinished.wanted());
   std::set<std::string> pipelineFiles, techniqueNames;
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    data.scenes.push_back(reports[i].record(data.peakRates, store ? *store : checkpoint));
-    data.scenes.back().unsuited = unsuited[i];
-    if (options.voxelResolution > 0) {
-      const std::vector<VoxelizerRecord> voxels = measureVoxelizers(
-          device, techniques, reports[i].scene(), voxelizerOptions(options, data.scenes.back()));
-      data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
-    }
-    for (const LoadedPipeline* loaded : pipelines[i]) {
+  for (const std::vector<const LoadedPipeline*>& ofScene : pipelines)
+    for (const LoadedPipeline* loaded : ofScene) {
       if (pipelineFiles.insert(loaded->shown).second)
         data.pipelines.push_back({loaded->shown, loaded->pipeline.name, loaded->pipeline.hash.text()});
       for (const std::string& name : loaded->pipeline.techniques()) techniqueNames.insert(name);
     }
-  }
   for (const std::string& name : techniqueNames)
     if (const Technique* technique = techniques.technique(name))
       data.techniques.push_back({name, technique->hash.text(), technique->shaders.hash.text(),
                                  technique->meaning, technique->paper});
   data.skipped = techniques.skipped();
-  if (store) data.stress = newestCells(store->stressCells());
-
-  write(data);
-  unfinished.finish();
+  // The page as it is now.
+  const auto writeNow = [&](bool complete) {
+    data.complete = complete;
+    data.measuringSeconds = budget.spent();
+    data.scenes.clear();
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      data.scenes.push_back(reports[i].record(data.peakRates, store ? *store : checkpoint));
+      data.scenes.back().unsuited = unsuited[i];
+    }
+    write(data);
+  };
+  measureAll(reports, options, budget, unfinished, [&] { writeNow(false); });
+  if (store) {
+    store->merge(checkpoint, unfinished.wanted());
+    data.stress = newestCells(store->stressCells());
+  }
+  if (options.voxelResolution > 0)
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      const std::vector<VoxelizerRecord> voxels =
+          measureVoxelizers(device, techniques, reports[i].scene(),
+                            voxelizerOptions(options, reports[i].record({}, store ? *store : checkpoint)));
+      data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
+    }
+  writeNow(true);
+  // What there was no time for is measured when it is asked for again: until then what is there stays.
+  const bool isWhole = std::all_of(reports.begin(), reports.end(),
+                                   [](const SceneReport& report) { return report.missing() == 0; });
+  if (isWhole) unfinished.finish();
 
   for (SceneRecord& scene : data.scenes) {
     for (PointRecord& point : scene.points) {
@@ -396,12 +494,8 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     }
     for (PruningRecord& pruning : scene.pruning) summary.pruning.push_back(std::move(pruning));
     if (!scene.references.empty()) summary.displays.emplace_back(scene.file, scene.display);
-    for (const LeftOutPoint& point : scene.leftOutPoints)
-      summary.leftOutPoints.push_back(
-          fmt::format("{}, {}: {}", scene.file, point.pipeline, pointText(point.parameters)));
-    for (const std::string& pipeline : scene.leftOutPrunings)
-      summary.leftOutPoints.push_back(
-          fmt::format("{}, {}: with and without leaving out", scene.file, pipeline));
+    summary.leftOutPoints += scene.leftOutPoints.size();
+    summary.leftOutPrunings += scene.leftOutPrunings.size();
     for (const auto& [pipeline, why] : scene.unsuited)
       summary.unsuited.push_back(scene.file + ", " + pipeline + ": " + why);
   }

@@ -65,7 +65,9 @@ void timeInTurns(gpu::Device& device, std::vector<Turn>& turns, int repeats, int
     std::vector<Held> held = holdTogether(device, some);
     std::vector<Turn*> failed;
     for (int repeat = 0; repeat < repeats; ++repeat)
-      forEach(held, failed, [](Held& one) { one.point->timeFrame(); });
+      forEach(held, failed, [](Held& one) {
+        if (!one.point->isSettled()) one.point->timeFrame();
+      });
     forEach(held, failed, [](Held& one) {
       one.point->finish();
       if (one.turn->read) one.turn->read(*one.point);

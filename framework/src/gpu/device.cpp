@@ -274,13 +274,13 @@ void DeviceState::freed(const void* resource, std::uint64_t bytes) {
 
 void DeviceState::forgetBindings() {
   // No object has this name, so the next bind is never mistaken for a repetition.
-  constexpr GLuint kNothing = ~GLuint{0};
-  cache.program = kNothing;
-  std::fill(cache.sampled.begin(), cache.sampled.end(), BindingCache::Sampled{kNothing, kNothing});
-  std::fill(cache.images.begin(), cache.images.end(), BindingCache::Image{kNothing, -1});
-  std::fill(cache.storage.begin(), cache.storage.end(), kNothing);
+  constexpr GLuint kNoObject = ~GLuint{0};
+  cache.program = kNoObject;
+  std::fill(cache.sampled.begin(), cache.sampled.end(), BindingCache::Sampled{kNoObject, kNoObject});
+  std::fill(cache.images.begin(), cache.images.end(), BindingCache::Image{kNoObject, -1});
+  std::fill(cache.storage.begin(), cache.storage.end(), kNoObject);
   for (auto& uniform : cache.uniforms) uniform.bytes.clear();
-  elementBuffer = kNothing;
+  elementBuffer = kNoObject;
 }
 
 // ---- UniformBuffer

@@ -26,6 +26,8 @@ constexpr const char* kMetrics[] = {kDefaultMetric, "rmse", "relative_mse", "per
 /// The share of a time saved by leaving out, where it exceeds the spread of the repeats.
 Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   const Measured before = medianOf(unpruned), after = medianOf(pruned);
+  if (before.value <= 0.0 || unpruned.repeats == 0)
+    return {{"told", "not_timed"}, {"ms", nullptr}, {"of_ms", nullptr}};
   const char* told = !decidable(before, after)                       ? "undecided"
                      : !differ(before, after, kSignificantTimeShare) ? "not_measurable"
                                                                      : "saved";
@@ -116,6 +118,7 @@ Json reportJson(const ReportRecord& record) {
   json["least_repeats"] = kLeastRepeats;
   json["budget_s"] = record.budgetSeconds > 0.0 ? Json(record.budgetSeconds) : Json(nullptr);
   json["measuring_s"] = numberJson(record.measuringSeconds);
+  json["complete"] = record.complete;
   json["scenes"] = Json::array();
   for (const SceneRecord& scene : record.scenes) json["scenes"].push_back(sceneJson(record, scene));
   if (!record.voxels.empty()) {

@@ -78,14 +78,14 @@ std::vector<SweepShare> sweepShares(const SweepText& text, TechniqueSource& tech
     const SweepBlock& block = text.sweeps[i];
     std::map<const SweepAxis*, std::vector<std::string>> without;  // pipelines that lack an axis
     for (const std::filesystem::path& file : block.pipelines) {
-      const auto [known, isNew] = loaded.emplace(file, nullptr);
+      const bool isNew = !loaded.contains(file);
+      std::shared_ptr<const Pipeline>& pipeline = loaded[file];
       if (isNew)
         collect([&] {
-          auto pipeline = std::make_shared<const Pipeline>(Pipeline::load(file));
-          checkPipeline(*pipeline, techniques);
-          known->second = std::move(pipeline);
+          auto read = std::make_shared<const Pipeline>(Pipeline::load(file));
+          checkPipeline(*read, techniques);
+          pipeline = std::move(read);
         });
-      const std::shared_ptr<const Pipeline>& pipeline = known->second;
       if (!pipeline) continue;
       std::vector<const SweepAxis*> lacking;
       SweepShare share{i, pipeline, fittedSweep(block, *pipeline, *text.document, findings, lacking)};

@@ -57,6 +57,9 @@ void UnfinishedStore::want(const std::vector<std::string>& keys) {
   Statement insert(database(), "INSERT OR IGNORE INTO wanted VALUES (?, ?)");
   for (const std::string& key : wanted_) insert.run(report_, key);
   Statement(database(), "UPDATE reports SET points = ? WHERE id = ?").run(points_, report_);
+  // The same report goes on: what an earlier run of it had measured of other versions is of no more use.
+  for (const Report& other : others())
+    if (!command_.empty() && other.claim.command == command_ && !lives(other.claim)) removeReport(other.id);
   transaction.commit();
 }
 

@@ -1,7 +1,6 @@
 #include "shader/arithmetic.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace lumivox::shader {
 
@@ -18,23 +17,6 @@ std::vector<std::uint32_t> withoutContractionMarks(std::span<const std::uint32_t
     const bool mark = (spirv[at] & 0xffffu) == kOpDecorate && length == 3 && spirv[at + 2] == kNoContraction;
     if (!mark) kept.insert(kept.end(), spirv.begin() + at, spirv.begin() + at + length);
     at += length;
-  }
-  return kept;
-}
-
-std::string withoutContractionMarks(std::string_view glsl) {
-  constexpr std::string_view kMark = "precise ";
-  const auto isPartOfWord = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-  };
-  std::string kept;
-  kept.reserve(glsl.size());
-  for (std::size_t at = 0; at < glsl.size();) {
-    const std::size_t found = glsl.find(kMark, at);
-    kept += glsl.substr(at, found - at);
-    if (found == std::string_view::npos) break;
-    at = found + kMark.size();
-    if (found > 0 && isPartOfWord(glsl[found - 1])) kept += kMark;
   }
   return kept;
 }

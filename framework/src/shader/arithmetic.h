@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace lumivox::shader {
@@ -12,7 +10,5 @@ namespace lumivox::shader {
 /// The module without its NoContraction decorations, those of `precise` in the source included. What is
 /// Invariant stays so: passes that must agree on positions still do.
 std::vector<std::uint32_t> withoutContractionMarks(std::span<const std::uint32_t> spirv);
-/// The same of the GLSL text that SPIRV-Cross made of it: without `precise`.
-std::string withoutContractionMarks(std::string_view glsl);
 
 }  // namespace lumivox::shader

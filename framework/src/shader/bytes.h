@@ -54,6 +54,13 @@ class ByteReader {
     text.resize(count());
     take(text.data(), text.size());
   }
+  /// A text where it lies.
+  std::string_view view() {
+    const std::size_t size = count();
+    const std::string_view text = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return text;
+  }
   template <class T>
   void value(std::vector<T>& values) {
     each(values, [this](T& v) { value(v); });

@@ -9,6 +9,7 @@
 #include "lumivox/base/error.h"
 #include "shader/arithmetic.h"
 #include "shader/counting.h"
+#include "shader/glsl.h"
 
 namespace lumivox::shader {
 namespace {
@@ -182,12 +183,9 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, VariantKey v
   codes.reserve(found->stages.size());
   const bool takesText = state_->device.shaderInput() == gpu::ShaderInput::glsl;
   for (const PackedStage& stage : found->stages) {
-    const PackedCode& packedCode = pack->second.codes[stage.code];
-    auto& [spirv, glsl] = codes.emplace_back(packedCode.spirv(), takesText ? packedCode.glsl() : std::string());
-    if (state_->device.arithmetic() == gpu::Arithmetic::fast) {
-      spirv = withoutContractionMarks(spirv);
-      glsl = withoutContractionMarks(glsl);
-    }
+    auto& [spirv, glsl] = codes.emplace_back(pack->second.codes[stage.code].spirv(), std::string());
+    if (state_->device.arithmetic() == gpu::Arithmetic::fast) spirv = withoutContractionMarks(spirv);
+    if (takesText) glsl = glslOf(spirv);
     stages.push_back({stage.stage, spirv, glsl});
   }
   std::shared_ptr<CountingProgram> counting;

@@ -14,7 +14,7 @@ namespace lumivox::shader {
 namespace {
 
 constexpr std::string_view kMagic{"LVXSHPK\n", 8};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 16;  // magic, version, size and hash of the content
 constexpr std::uint64_t kLimitBytes = std::uint64_t{1} << 30;
 
@@ -50,12 +50,6 @@ void exchangeProgram(Archive& archive, Program& program) {
   });
 }
 
-template <class Archive, class Data>
-void exchangeDeflated(Archive& archive, Data& data) {
-  archive.value(data.expandedBytes);
-  archive.value(data.stream);
-}
-
 void writeContent(ByteWriter& out, const ShaderPack& pack) {
   out.value(pack.technique);
   out.each(pack.programs, [&](const PackedProgram& program) {
@@ -75,8 +69,8 @@ void writeContent(ByteWriter& out, const ShaderPack& pack) {
   out.each(pack.codes, [&](const PackedCode& code) {
     out.value(code.hash.high);
     out.value(code.hash.low);
-    exchangeDeflated(out, code.deflatedSpirv);
-    exchangeDeflated(out, code.deflatedGlsl);
+    out.value(code.deflated.expandedBytes);
+    out.value(code.deflated.stream);
   });
 }
 
@@ -89,7 +83,8 @@ void requireBelow(Value value, std::uint64_t end) {
   if (static_cast<std::uint64_t>(value) >= end) throw OutOfRange{};
 }
 
-void readContent(ByteReader& in, ShaderPack& pack) {
+/// Codes stay where they lie in the file.
+void readContent(ByteReader& in, ShaderPack& pack, const std::shared_ptr<const std::string>& file) {
   constexpr std::uint64_t kFormats = static_cast<std::uint64_t>(gpu::Format::depth32f) + 1;
   in.value(pack.technique);
   in.each(pack.programs, [&](PackedProgram& program) {
@@ -124,9 +119,10 @@ void readContent(ByteReader& in, ShaderPack& pack) {
   in.each(pack.codes, [&](PackedCode& code) {
     in.value(code.hash.high);
     in.value(code.hash.low);
-    exchangeDeflated(in, code.deflatedSpirv);
-    exchangeDeflated(in, code.deflatedGlsl);
-    if (code.deflatedSpirv.expandedBytes % sizeof(std::uint32_t) != 0) throw OutOfRange{};
+    in.value(code.deflated.expandedBytes);
+    code.deflated.stream = in.view();
+    code.deflated.holder = file;
+    if (code.deflated.expandedBytes % sizeof(std::uint32_t) != 0) throw OutOfRange{};
   });
   for (const PackedProgram& program : pack.programs) {
     for (const PackedVariant& variant : program.variants) {
@@ -181,14 +177,12 @@ std::string PackedProgram::text(const std::vector<int>& values) const {
   return text;
 }
 
-PackedCode PackedCode::of(const ContentHash& hash, std::span<const std::uint32_t> spirv,
-                          std::string_view glsl) {
-  return {hash, Deflated::of({reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes()}),
-          Deflated::of(glsl)};
+PackedCode PackedCode::of(const ContentHash& hash, std::span<const std::uint32_t> spirv) {
+  return {hash, Deflated::of({reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes()})};
 }
 
 std::vector<std::uint32_t> PackedCode::spirv() const {
-  const std::string bytes = deflatedSpirv.expanded();
+  const std::string bytes = deflated.expanded();
   std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
   std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
   return words;
@@ -205,7 +199,8 @@ const PackedProgram& ShaderPack::program(const std::string& wanted) const {
 }
 
 ShaderPack readShaderPack(const std::filesystem::path& path) {
-  const std::string file = readFile(path, kLimitBytes);
+  const auto holder = std::make_shared<const std::string>(readFile(path, kLimitBytes));
+  const std::string& file = *holder;
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("{}: {}; rebuild the shaders", path.string(), why));
   };
@@ -235,7 +230,7 @@ ShaderPack readShaderPack(const std::filesystem::path& path) {
   pack.hash = expected;
   try {
     ByteReader reader(content);
-    readContent(reader, pack);
+    readContent(reader, pack, holder);
     if (!reader.atEnd()) refuse("the shader pack is damaged (more content than expected)");
   } catch (const Truncated&) {
     refuse("the shader pack is damaged (less content than expected)");

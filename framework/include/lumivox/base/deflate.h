@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,10 +13,13 @@ std::string zlibStream(std::string_view bytes, int level);
 
 /// Deflated bytes that know how long they were.
 struct Deflated {
-  std::string stream;
+  std::string_view stream;
   std::uint64_t expandedBytes = 0;
+  /// Where the stream lies: in a string of its own, or in that of a file which it shares with others.
+  std::shared_ptr<const std::string> holder;
 
   static Deflated of(std::string_view bytes);
+  static Deflated ofStream(std::string stream, std::uint64_t expandedBytes);
   /// Error when the stream is damaged or holds another number of bytes.
   std::string expanded() const;
 };

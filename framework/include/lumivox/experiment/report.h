@@ -36,8 +36,9 @@ struct ReportOptions {
   /// Pipelines that accumulate are measured after 1, 2, 4 ... and this many frames of the still scene too, at
   /// their default parameters.
   int frames = 1;
-  /// s, for measuring after the references; 0: no limit. The default points are measured in any case, what
-  /// leaving out saves and the points of sweeps in turns as long as there is time.
+  /// s, for measuring after the references; 0: no limit. What would end later is not begun: first a point for
+  /// each technique, by the pipeline of its name, then the other default points, the points of sweeps in
+  /// turns, and how much time leaving out saves. What passes do is counted only without a limit.
   double budgetSeconds = 0.0;
   /// Called once every text and every file of a scene is read, before the first image is rendered.
   std::function<void()> allRead;
@@ -58,18 +59,18 @@ struct ReportSummary {
   std::vector<PruningRecord> pruning;
   std::vector<std::pair<std::string, Display>> displays;  ///< of the images of each scene
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
-  std::vector<std::string>
-      leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time, or what leaving out saves
+  /// For which there was no time: points; pipelines of which what leaving out saves was not timed.
+  std::size_t leftOutPoints = 0, leftOutPrunings = 0;
 };
 
 /// The results store in which the points of a report on this page are kept until it is written.
 std::filesystem::path unfinishedStoreOf(const std::filesystem::path& page);
 
-/// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.
-/// Points are kept in unfinishedStoreOf(options.output) as soon as they
-/// are measured: when the report is interrupted, the next one takes them up. When `write` has returned it
-/// removes those that no other report on this page wants, and the file when nothing is left in it. A point
-/// that fails is one that says why.
+/// Measures, and gives the record to `write` whenever there is more in it; the last time it is complete.
+/// Error (before any work) when a text is wrong. Points are kept in unfinishedStoreOf(options.output) as soon
+/// as they are measured: when the report is interrupted, or there was no time for all of them, the next one
+/// takes them up. A report that lacks none removes those that no other report on this page wants, and the
+/// file when nothing is left in it. A point that fails is one that says why.
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write);

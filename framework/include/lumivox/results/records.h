@@ -99,6 +99,10 @@ struct ReportPoint {
   std::vector<std::string> notes;  ///< what passes measured about themselves; not kept in the results store
   std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
   std::string command;  ///< that repeats it
+  /// Positions in the pixel that its images are means over; not kept in the results store.
+  int subpixels = 0;
+  /// s that measuring it took in this process, by what for; not kept in the results store.
+  std::map<std::string, double> measuringSeconds;
 };
 
 /// The cost of a frame in parts: once (preprocessing), when something moves, and every time. NaN where that

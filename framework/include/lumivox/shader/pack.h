@@ -82,15 +82,16 @@ struct PackedProgram {
   std::string text(const std::vector<int>& values) const;
 };
 
-/// Code shared by all variants whose SPIR-V is the same. Both forms are kept deflated; who uses one expands it.
+/// Code shared by all variants whose SPIR-V is the same. It is kept deflated; who uses it expands it.
 struct PackedCode {
-  ContentHash hash;  ///< of the SPIR-V
-  Deflated deflatedSpirv, deflatedGlsl;
+  ContentHash hash;   ///< of the SPIR-V
+  Deflated deflated;  ///< the SPIR-V
 
-  static PackedCode of(const ContentHash& hash, std::span<const std::uint32_t> spirv, std::string_view glsl);
+  static PackedCode of(const ContentHash& hash, std::span<const std::uint32_t> spirv);
   std::vector<std::uint32_t> spirv() const;
-  /// GLSL 4.50 by SPIRV-Cross from the SPIR-V; specialisation constants are SPIRV_CROSS_CONSTANT_ID_n macros.
-  std::string glsl() const { return deflatedGlsl.expanded(); }
+  /// GLSL 4.50 by SPIRV-Cross from the SPIR-V, for devices that take no SPIR-V; specialisation constants are
+  /// SPIRV_CROSS_CONSTANT_ID_n macros. Made anew at each call.
+  std::string glsl() const;
 };
 
 struct ShaderPack {

@@ -322,9 +322,11 @@ const comparisonOf = (function () {
   }
 
   /** The points for which there was no time; null: none. */
-  const leftOut = scene => scene.left_out_points.length === 0 ? null : lumivox.folded(
-    `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
-    list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))));
+  const leftOut = scene => scene.left_out_points.length === 0 ? null : !data.complete
+    ? h("p", null, `${scene.left_out_points.length} points are still to come.`)
+    : [h("p", null, `For ${scene.left_out_points.length} points there was no time within ${data.budget_s} s. The same command goes on with them: `,
+         h("code", null, data.command)),
+       lumivox.folded("Which ones", list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))))];
 
   /** Of a scene: { plot, defaults, follow, chosen, sections, voxels }, the last made when it is asked for; null plot: there is nothing to compare. `follow` is told whenever
    *  something else is chosen. */

@@ -50,7 +50,8 @@
   /** What was needed, in a sentence. */
   function neededSentence(scene) {
     const own = scene.pruning;
-    if (own.length === 0) return h("p", null, h("b", null, "What was needed: "), "not measured.");
+    if (own.length === 0) return h("p", null, h("b", null, "What was needed: "), data.complete ? "not measured." : "to come.");
+    const timed = own.filter(one => one.first_frame_saves.told !== "not_timed").length;
     const sum = member => own.reduce((total, one) => total + one[member], 0);
     const savings = own.filter(one => one.first_frame_saves.told === "saved")
       .map(one => ({ name: shortName(one.pipeline), share: one.first_frame_saves.ms / one.first_frame_saves.of_ms }))
@@ -59,7 +60,7 @@
     return h("p", null, h("b", null, "What was needed: "),
       `${sum("passes_kept")} of ${sum("passes_total")} passes of ${plural(own.length, "pipeline")}; leaving out the rest `,
       savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})`
-                         : "saves no time that could be measured",
+        : timed > 0 ? "saves no time that could be measured" : "saves a time that was not measured",
       ` and ${bytes(Math.max(0, sum("bytes_keep_everything") - sum("bytes")))} of memory, and `,
       differing.length === 0 ? "changes no image by a single bit."
                              : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."));
@@ -215,6 +216,7 @@
   // ---- what was needed
 
   function savedText(saved) {
+    if (saved.told === "not_timed") return soft("not timed");
     if (saved.told === "undecided") return "undecided with fewer than " + data.least_repeats + " repeats, of " + milliseconds(saved.of_ms) + " ms";
     if (saved.told === "not_measurable") return "not measurable, of " + milliseconds(saved.of_ms) + " ms";
     return milliseconds(saved.ms) + " of " + milliseconds(saved.of_ms) + " ms";
@@ -292,7 +294,9 @@
   function sceneParts(scene, index) {
     const id = name => "scene-" + index + (name ? "-" + name : "");
     const compared = comparisonOf(scene);
-    const sections = images.brief ? [] : [
+    const ofReference = ["reference", "Reference", "The reference and its noise", reference(scene)];
+    const sections = images.brief ? [] : scene.points.length === 0 ? [
+      ["fronts", "Fronts", "Fronts, equal time, equal error", compared.sections], ofReference] : [
       ["fronts", "Fronts", "Fronts, equal time, equal error", compared.sections],
       ["recall", "Recall", "Error against recall", compared.voxels()],
       ["images", "Images", "Images, reference and FLIP maps", imagesOf.all(scene, index)],
@@ -300,7 +304,7 @@
       ["slopes", "Convergence", "Convergence", slopes(scene)], ["times", "Time and memory", "Time and memory per pass", times(scene)],
       ["needed", "What was needed", "What was needed", needed(scene)], ["health", "Health", "Health", health(scene)],
       ["commands", "Commands", "Parameters and commands", commands(scene)],
-      ["reference", "Reference", "The reference and its noise", reference(scene)]].filter(([, , , content]) => content !== null);
+      ofReference].filter(([, , , content]) => content !== null);
     return h("section", { class: "scene", "aria-label": sceneTitle(scene) },
       h("div", { class: "scene-bar", id: id() }, h("h2", null, sceneTitle(scene)),
         sections.length > 0 && h("nav", { "aria-label": "sections of " + sceneTitle(scene) }, sections.map(([name, brief]) => link(id(name), brief)))),
@@ -358,16 +362,17 @@
   }
 
   const left = data.scenes.reduce((sum, scene) => sum + scene.left_out_points.length, 0);
-  const outOfTime = left === 0 ? "" : `; no time for ${plural(left, "point")} of sweeps in ${data.budget_s} s`;
+  const outOfTime = !data.complete ? `; STILL BEING MEASURED: ${plural(left, "point")} to come, reload for more`
+    : left === 0 ? "" : `; no time for ${plural(left, "point")} in ${data.budget_s} s`;
   const voxels = data.voxels && !images.brief, stress = data.stress && !images.brief;
   show(
     h("header", { class: "bar" }, h("h1", null, "Lumivox report"),
       h("nav", { "aria-label": "parts of the report" }, data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))),
-        link("summary", "All points"), voxels && link("voxels", "Voxels"), stress && link("stress", "Where it breaks"),
+        data.scenes.some(scene => scene.points.length > 0) && link("summary", "All points"), voxels && link("voxels", "Voxels"), stress && link("stress", "Where it breaks"),
         link("device", "Device")),
       h("p", { class: "soft" }, data.device.renderer + ", " + data.date + outOfTime)),
     h("main", null, data.scenes.map(sceneParts),
-      h("section", { class: "rest", "aria-label": "all scenes" }, summary(),
+      h("section", { class: "rest", "aria-label": "all scenes" }, data.scenes.some(scene => scene.points.length > 0) && summary(),
         voxels && section("voxels", "Voxels", voxelSection(data.voxels, data.voxel_scaling)),
         stress && section("stress", "Where each technique breaks", stressSection(data.stress, "")), provenance()),
       h("p", { class: "caption" }, "The same numbers are in the .csv and .json files beside this page.",
