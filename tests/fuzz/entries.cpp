@@ -180,19 +180,18 @@ void volumeFile(std::string_view input) {
     Hasher hasher;
     const DensityVolume volume = readVolumeFile(file, "", hasher);
     const auto size = glm::u64vec3(volume.resolution);
-    require(volume.values.size() == size.x * size.y * size.z && !volume.values.empty(), "every voxel has its density");
+    require(volume.values.size() == size.x * size.y * size.z && !volume.values.empty(),
+            "every voxel has its density");
     require(volume.voxelSize > 0.0, "voxels have an extent");
-    for (const float value : volume.values) require(std::isfinite(value) && value >= 0.0f, "densities are finite and not negative");
+    for (const float value : volume.values)
+      require(std::isfinite(value) && value >= 0.0f, "densities are finite and not negative");
   });
 }
 
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{"scene_text", sceneText},
-                                      {"pipeline_text", pipelineText},
-                                      {"obj_model", objModel},
-                                      {"shader_pack", shaderPack},
-                                      {"exr_image", exrImage},
-                                      {"volume_file", volumeFile}};
+  static const std::vector<Entry> all{{"scene_text", sceneText}, {"pipeline_text", pipelineText},
+                                      {"obj_model", objModel},   {"shader_pack", shaderPack},
+                                      {"exr_image", exrImage},   {"volume_file", volumeFile}};
   return all;
 }
 

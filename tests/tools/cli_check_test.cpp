@@ -305,11 +305,11 @@ TEST_CASE("models beside the project are sought from where the text lies, not fr
   place.write("shared/models/far/room.obj", kRoomObj);
   place.write("shared/models/far/room.mtl", kRoomMtl);
   place.write("elsewhere/shared/models/near/room.obj", kRoomObj);
-  place.write("elsewhere/work/x", "");
+  place.write("elsewhere/desk/x", "");
   const std::string scene = "'" + place.file("lab/scenes/deep/a.scene") + "'";
   CHECK(runCommand("lumivox check " + scene).exitCode == 0);
   place.write("lab/scenes/deep/a.scene", replaced(kRoomScene, "room.obj", "near/room.obj"));
-  const CommandResult other = runCommand("cd '" + place.file("elsewhere/work") + "' && " +
+  const CommandResult other = runCommand("cd '" + place.file("elsewhere/desk") + "' && " +
                                          (binaryDirectory() / "bin/lumivox").string() + " check " + scene);
   CHECK(other.exitCode == 2);
   CHECK_FALSE(contains(other.errors, "elsewhere"));

@@ -90,8 +90,8 @@ RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& p
 /// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
 /// the result is the first frame's; health findings are those of the first frame that has some. At each
 /// position the image is that of the last of `frames` frames, of which the first knows nothing from before.
-/// `apart` becomes half the difference between the mean over the outer positions and that over the inner ones:
-/// what the mean over all may still be wrong by.
+/// `apart` becomes half the difference between the mean over the outer positions and that over the inner
+/// ones: what the mean over all may still be wrong by.
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex = 0, int frames = 1, FrameResult* apart = nullptr);
 
@@ -124,7 +124,7 @@ class TimedPoint {
              const KeptOutputs& kept = {});
   ~TimedPoint();
   TimedPoint(TimedPoint&&) noexcept;
-  void timeFrame();       ///< every kept pass runs; of a point of several frames all of them, from nothing
+  void timeFrame();  ///< every kept pass runs; of a point of several frames all of them, from nothing
   /// Its frames took the same time, as nearly as is told: further ones would say the same.
   bool isSettled() const;
   void timeNextFrame();   ///< 1/60 s after the last one
