@@ -78,9 +78,10 @@ Scene furnace(float albedo) {
   return builder.scene;
 }
 
-ReportPoint measured(Toys& toys, const Scene& scene, const Pipeline& pipeline, int frames) {
+ReportPoint measured(Toys& toys, const Scene& scene, const Pipeline& pipeline, int frames,
+                     int subpixels = 2) {
   ReportOptions options;
-  options.subpixels = 2;
+  options.subpixels = subpixels;
   options.seeds = 2;
   ReferenceOptions referenceOptions = quietly(64);
   referenceOptions.width = 12;
@@ -128,6 +129,25 @@ TEST_CASE("a judged image covers upright and level edges within half of one of i
       INFO(level << " " << at);
       CHECK(std::abs(frame.outputs.at("direct").at(0, 0, 0) - at) <= 0.5f / 16.0f + 1e-3f);
     }
+}
+
+TEST_CASE("four positions are enough where more would change nothing, and an edge is judged at all of them") {
+  Toys toys;
+  const Scene scene = furnace(0.0f);
+  const ReportPoint flat = measured(toys, scene, toyPipeline("progressive", "direct"), 1, 16);
+  CHECK(flat.subpixels == 4);
+  for (const ComponentError& error : flat.errors) CHECK(error.error.rmse.value == Approx(0.5).epsilon(1e-3));
+  // Of four positions three lie before the edge, of sixteen thirteen; all of the reference is 1.
+  const Pipeline edge = Pipeline::parse(
+      "pipeline \"Edge\" {\n  pass a toys.edge { at 0.8 }\n  output direct a.radiance\n}\n", "edge.pipeline");
+  const ReportPoint judged = measured(toys, scene, edge, 1, 16);
+  REQUIRE(judged.errors.size() >= 2);  // of the output and of the whole image
+  for (const ComponentError& error : judged.errors) {
+    INFO(error.output);
+    CHECK(error.error.rmse.value == Approx(3.0 / 16.0).epsilon(1e-3));
+  }
+  for (const ComponentError& error : measured(toys, scene, edge, 1, 4).errors)
+    CHECK(error.error.rmse.value == Approx(0.25).epsilon(1e-3));
 }
 
 TEST_CASE("the time of a point of several frames is that of all of them, from nothing in each repeat") {
