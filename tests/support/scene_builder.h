@@ -1,6 +1,7 @@
 // Scenes made by code, small enough that their light is known in closed form.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -62,6 +63,22 @@ inline Scene litRoom(int width, int height) {
   builder.box({0.55f, 0.001f, 0.55f}, {0.85f, 0.3f, 0.85f}, shiny, false);
   builder.look({0.5, 0.5, 2.4}, {0.5, 0.5, 0}, {0, 1, 0}, 0.7, width, height);
   return builder.scene;
+}
+
+/// The same surfaces, of which those that do not shine turn their other side to the front.
+inline Scene turnedOver(Scene scene) {
+  const auto shines = [&](const Part& part) {
+    return scene.materials[static_cast<std::size_t>(part.material)].emission != glm::vec3(0.0f);
+  };
+  for (const Object& object : scene.objects) {
+    if (std::any_of(object.parts.begin(), object.parts.end(), shines)) continue;
+    for (const Part& part : object.parts)
+      for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3)
+        std::swap(scene.indices[i + 1], scene.indices[i + 2]);
+    for (std::uint32_t i = object.firstVertex; i < object.firstVertex + object.vertexCount; ++i)
+      scene.normals[i] = -scene.normals[i];
+  }
+  return scene;
 }
 
 /// A floor with a patch that a spot of 1 W/sr lights and, unless `bright` is 0, another that one of that
