@@ -120,6 +120,30 @@ TEST_CASE(
   CHECK(pageRecords(page) == json);
 }
 
+TEST_CASE("a report for a look takes one frame, one seed and four positions, says so, and decides nothing") {
+  const Workplace place;
+  place.write("quick.pipeline", kQuickPipeline);
+  const auto made = [&](const std::string& more) {
+    const CommandResult result =
+        runCommand("lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
+                   "' -q --spp 16 --no-sweep --quick -o '" + place.file("out/page.html") + "' " + more);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    return nlohmann::json::parse(place.read("out/page.json"));
+  };
+  const nlohmann::json look = made("");
+  CHECK(look.at("look") == true);
+  const nlohmann::json point = look.at("scenes").at(0).at("points").at(0);
+  CHECK(point.at("frame_ms").at("repeats") == 1);
+  CHECK(contains(point.at("command"), "--subpixels 4 "));
+  CHECK(point.at("errors").at(0).at("seeds") == 1);
+  if (canDrawPages()) CHECK(contains(drawnPage(place.file("out/page.html")).at("text"), "A LOOK (--quick)"));
+  // What is said beside it holds.
+  const nlohmann::json sharper = made("--repeats 3 --subpixels 1").at("scenes").at(0).at("points").at(0);
+  CHECK(sharper.at("frame_ms").at("repeats") == 3);
+  CHECK(contains(sharper.at("command"), "--subpixels 1 "));
+}
+
 TEST_CASE("a report shows and judges all images of a scene at one exposure, and says which everywhere") {
   const Workplace place;
   const auto made = [&](const std::string& options) {

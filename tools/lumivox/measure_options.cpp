@@ -23,12 +23,17 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--spp", options.referenceSamples,
                  "the reference's samples per pixel (default: by the size of the image)")
       ->check(CLI::Range(1, 1 << 24));
-  app.add_option("--subpixels", options.subpixels,
-                 "judged images are means over N positions in the pixel (default 16; 1: its centre)")
-      ->check(CLI::Range(1, 4096));
-  app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
-      ->check(CLI::Range(1, 10000));
-  app.add_option("--seeds", options.seeds, "seeds per point (default 3)")->check(CLI::Range(1, 10000));
+  app.add_flag("--quick", quick,
+               "for a look: one timed frame, one seed and four positions in the pixel for each point, unless "
+               "--repeats, --seeds or --subpixels say otherwise");
+  subpixels_ =
+      app.add_option("--subpixels", options.subpixels,
+                     "judged images are means over N positions in the pixel (default 16; 1: its centre)")
+          ->check(CLI::Range(1, 4096));
+  repeats_ = app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
+                 ->check(CLI::Range(1, 10000));
+  seeds_ =
+      app.add_option("--seeds", options.seeds, "seeds per point (default 3)")->check(CLI::Range(1, 10000));
   app.add_option("--flicker-frames", options.flickerPairs,
                  "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
       ->check(CLI::Range(0, 1000));
@@ -59,6 +64,12 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::stri
   asked.exposure = display.given();
   asked.tone = display.toneCurve();
   asked.openSweeps = !noSweep;
+  if (quick) {
+    asked.isLook = true;
+    if (subpixels_->count() == 0) asked.subpixels = 4;
+    if (repeats_->count() == 0) asked.repeats = 1;
+    if (seeds_->count() == 0) asked.seeds = 1;
+  }
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);
   asked.progress = progressLine(doing, unit);

@@ -11,6 +11,7 @@ struct MeasureOptions {
   RunOptions run;
   DisplayOptions display;
   bool noSweep = false;
+  bool quick = false;
 
   /// A command that makes images adds --tone. `store`: the meaning of --store here; `scenes`: that of the
   /// positional texts.
@@ -19,6 +20,9 @@ struct MeasureOptions {
   /// pipelines.
   ReportOptions asked(const GlobalOptions& global, const std::string& doing = "measuring",
                       const std::string& unit = "points") const;
+
+ private:
+  CLI::Option *subpixels_ = nullptr, *repeats_ = nullptr, *seeds_ = nullptr;
 };
 
 /// Tells how far a command is by one line of progress; `unit`: the plural of what is counted.

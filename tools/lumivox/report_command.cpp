@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -161,9 +162,13 @@ void printSummary(const ReportSummary& summary, const ReportOptions& options) {
   if (!summary.unsuited.empty())
     text += fmt::format("{} pipeline{} do not suit: {}\n", summary.unsuited.size(),
                         summary.unsuited.size() == 1 ? "" : "s", fmt::join(summary.unsuited, "; "));
-  if (summary.leftOutPoints > 0)
-    text += fmt::format("no time for {} point{}; the same command goes on with them: {}\n",
-                        summary.leftOutPoints, summary.leftOutPoints == 1 ? "" : "s", options.commandLine);
+  const std::string left =
+      fmt::format("no time for {} point{}", summary.leftOutPoints, summary.leftOutPoints == 1 ? "" : "s");
+  if (summary.neededSeconds > 0.0)
+    text += fmt::format("{}: none would have ended in time; --budget {:.0f}s begins the shortest\n", left,
+                        5.0 * std::ceil(summary.neededSeconds / 5.0));
+  else if (summary.leftOutPoints > 0)
+    text += fmt::format("{}; the same command goes on with them: {}\n", left, options.commandLine);
   else if (summary.leftOutPrunings > 0)
     text += fmt::format("no time to time what leaving out saves, of {} pipelines\n", summary.leftOutPrunings);
   std::set<std::string> scenes;

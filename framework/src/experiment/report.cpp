@@ -101,6 +101,16 @@ class SceneReport {
   std::size_t missing() const { return count(State::missing); }
   std::size_t takenUp() const { return count(State::takenUp); }
 
+  /// What the cheapest of the points that are missing is expected to take, s, of those that were looked at;
+  /// nothing where none was.
+  std::optional<double> leastMissingSeconds() {
+    std::optional<double> least;
+    for (const Point& point : points_)
+      if (point.state == State::missing && frames_.contains(point.wanted.loaded))
+        least = std::min(least.value_or(expectedSeconds(point)), expectedSeconds(point));
+    return least;
+  }
+
   /// Which default points: of the pipelines that have the name of a technique, which stand for it, or of the
   /// others.
   enum class Defaults { all, ofTechniques, others };
@@ -339,9 +349,10 @@ class SceneReport {
 /// Measures all scenes, and tells `published` whenever there is more to tell. Without a limit on time
 /// everything; else first a point for each technique and what each pipeline leaves out, then the other
 /// default points, the points of sweeps, and how much time leaving out saves. What would end too late is not
-/// begun.
-void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget,
-                results::UnfinishedStore& unfinished, const std::function<void()>& published) {
+/// begun. Returns the least budget with which another point would have begun, s, where it left points and
+/// none could; else 0.
+double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget,
+                  results::UnfinishedStore& unfinished, const std::function<void()>& published) {
   std::size_t finished = 0, total = 0;
   for (const SceneReport& scene : scenes) total += scene.missing();
   const auto done = [&](std::size_t points) {
@@ -369,14 +380,21 @@ void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, c
   }
   // What leaving out saves in time is kept in no store: it must not take the time of points again and again.
   if (!budget.isLimited()) prune(true);
+  const double before = budget.spent();
   for (bool more = true; more;) {
     more = false;
     for (SceneReport& scene : scenes) more = scene.measureMore(budget, done) || more;
     if (more) published();
   }
+  double least = 0.0;
+  if (budget.isLimited() && finished == 0)
+    for (SceneReport& scene : scenes)
+      if (const std::optional<double> seconds = scene.leastMissingSeconds())
+        least = least == 0.0 ? before + *seconds : std::min(least, before + *seconds);
   if (budget.isLimited()) prune(true);
   // Where time is short one point tells of the machine's mood.
   for (SceneReport& scene : scenes) scene.control(budget.isLimited() ? 1 : Measurer::kBatch);
+  return least;
 }
 
 VoxelizerOptions voxelizerOptions(const ReportOptions& options, const SceneRecord& scene) {
@@ -411,6 +429,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   data.equalTimesMs = options.equalTimesMs;
   data.equalErrors = options.equalErrors;
   data.budgetSeconds = options.budgetSeconds;
+  data.isLook = options.isLook;
   data.device = device.info();
   data.shaderInput = gpu::programRouteText(device);
   data.host = hostText();
@@ -470,7 +489,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     }
     write(data);
   };
-  measureAll(reports, options, budget, unfinished, [&] { writeNow(false); });
+  summary.neededSeconds = measureAll(reports, options, budget, unfinished, [&] { writeNow(false); });
   if (store) {
     store->merge(checkpoint, unfinished.wanted());
     data.stress = newestCells(store->stressCells());

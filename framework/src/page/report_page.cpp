@@ -118,6 +118,7 @@ Json reportJson(const ReportRecord& record) {
   json["least_repeats"] = kLeastRepeats;
   json["budget_s"] = record.budgetSeconds > 0.0 ? Json(record.budgetSeconds) : Json(nullptr);
   json["measuring_s"] = numberJson(record.measuringSeconds);
+  json["look"] = record.isLook;
   json["complete"] = record.complete;
   json["scenes"] = Json::array();
   for (const SceneRecord& scene : record.scenes) json["scenes"].push_back(sceneJson(record, scene));

@@ -40,6 +40,7 @@ struct ReportOptions {
   /// each technique, by the pipeline of its name, then the other default points, the points of sweeps in
   /// turns, and how much time leaving out saves. What passes do is counted only without a limit.
   double budgetSeconds = 0.0;
+  bool isLook = false;  ///< the page says that one frame, one seed and few positions decide nothing
   /// Called once every text and every file of a scene is read, before the first image is rendered.
   std::function<void()> allRead;
   /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
@@ -61,6 +62,8 @@ struct ReportSummary {
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
   /// For which there was no time: points; pipelines of which what leaving out saves was not timed.
   std::size_t leftOutPoints = 0, leftOutPrunings = 0;
+  /// The least budget with which another point begins, s, where this one began none; else 0.
+  double neededSeconds = 0.0;
 };
 
 /// The results store in which the points of a report on this page are kept until it is written.

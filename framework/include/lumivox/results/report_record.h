@@ -82,6 +82,7 @@ struct ReportRecord {
   std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
   double budgetSeconds = 0.0;                     ///< for measuring after the references; 0: no limit
   double measuringSeconds = 0.0;                  ///< that it took
+  bool isLook = false;                            ///< one frame, one seed, few positions: nothing is decided
   bool complete = true;                           ///< false: it is still being measured
   gpu::DeviceInfo device;
   std::string shaderInput, host;

@@ -370,7 +370,8 @@
       h("nav", { "aria-label": "parts of the report" }, data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))),
         data.scenes.some(scene => scene.points.length > 0) && link("summary", "All points"), voxels && link("voxels", "Voxels"), stress && link("stress", "Where it breaks"),
         link("device", "Device")),
-      h("p", { class: "soft" }, data.device.renderer + ", " + data.date + outOfTime)),
+      h("p", { class: "soft" }, data.device.renderer + ", " + data.date + outOfTime
+        + (data.look ? "; A LOOK (--quick): a frame, a seed and four positions in the pixel for each point, so that no difference is decided" : ""))),
     h("main", null, data.scenes.map(sceneParts),
       h("section", { class: "rest", "aria-label": "all scenes" }, data.scenes.some(scene => scene.points.length > 0) && summary(),
         voxels && section("voxels", "Voxels", voxelSection(data.voxels, data.voxel_scaling)),
