@@ -63,7 +63,8 @@ TEST_CASE("between measured points a power law of error against time is met exac
   }
 }
 
-TEST_CASE("nothing is extrapolated: a budget below every point is not reached, one above them says at most") {
+TEST_CASE(
+    "nothing is extrapolated: a frame time below every point is not reached, one above them says at most") {
   const std::vector<TradeOff> points = powerLaw(1.0, -1.0);
   const std::vector<std::size_t> front = frontByValue(points);
   CHECK(errorAtTime(points, front, 0.99).reach == Reach::notReached);
@@ -173,7 +174,8 @@ TEST_CASE("two points within their uncertainties are both on the Pareto front") 
   CHECK(front[2] == std::size_t{1});
 }
 
-TEST_CASE("budgets are round numbers within what was measured, at least three where there is room") {
+TEST_CASE(
+    "frame times of tables are round numbers within what was measured, at least three where there is room") {
   CHECK(roundNumbers(0.9, 60.0) == std::vector<double>{1, 2, 5, 10, 20, 50});
   CHECK(roundNumbers(0.02, 0.2) == std::vector<double>{0.02, 0.05, 0.1, 0.2});
   CHECK(roundNumbers(10.0, 21.0) == std::vector<double>{10, 15, 20});

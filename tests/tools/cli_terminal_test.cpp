@@ -68,7 +68,7 @@ TEST_CASE(
   }
   const CommandResult tuned =
       runCommand(place.program() + "tune " + inputs + place.quick() +
-                 "--budget 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
+                 "--frame-time 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
   INFO(tuned.errors);
   CHECK(contains(tuned.errors, "tuning: 1 of 6 points at most, about "));
   const CommandResult voxels = runCommand("lumivox voxels " + place.quoted("room.scene") +
@@ -273,7 +273,7 @@ TEST_CASE("times have units as in the texts, and a budget without one is refused
   checkRefused(runCommand("lumivox report " + room + " --budget 30"),
                "--budget '30': expected a time above 0 with its unit (s, ms or min)");
   checkRefused(runCommand("lumivox report " + room + " --budget 0s"), "above 0");
-  checkRefused(runCommand("lumivox tune " + room + " --budget 16"), "--budget '16'");
+  checkRefused(runCommand("lumivox tune " + room + " --frame-time 16"), "--frame-time '16'");
   checkRefused(runCommand("lumivox stress --time-limit 3"), "--time-limit '3'");
   checkRefused(runCommand("lumivox report " + room + " --equal-time 3"), "--equal-time '3'");
   const std::string render = "lumivox render " + room + " '" + committedPipeline("direct_lighting") +

@@ -40,7 +40,7 @@ struct Tuning {
 
 TEST_CASE("a search without a tight limit ends at a point that none of its neighbours beats") {
   const Tuning tuning;
-  const CommandResult result = tuning.run("--budget 1000s --output direct --metric percentile95 --json");
+  const CommandResult result = tuning.run("--frame-time 1000s --output direct --metric percentile95 --json");
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   const Json json = Json::parse(result.output);
@@ -59,19 +59,19 @@ TEST_CASE("a search without a tight limit ends at a point that none of its neigh
 
 TEST_CASE("a search judges by FLIP unless another metric is asked for, and gives its points as CSV") {
   const Tuning tuning;
-  const CommandResult table = tuning.run("--budget 1000s");
+  const CommandResult table = tuning.run("--frame-time 1000s");
   INFO(table.errors);
   REQUIRE(table.exitCode == 0);
   CHECK(table.output.find("flip") != std::string::npos);
-  const std::string csv = tuning.run("--budget 1000s --csv").output;
+  const std::string csv = tuning.run("--frame-time 1000s --csv").output;
   CHECK(csv.rfind("run,created,scene,pipeline,", 0) == 0);
   CHECK(csv.substr(0, csv.find("\r\n")).find(",parameter_samples") != std::string::npos);
-  CHECK(tuning.run("--budget 1000s --csv --json").exitCode == 2);
+  CHECK(tuning.run("--frame-time 1000s --csv --json").exitCode == 2);
 }
 
 TEST_CASE("the front of a search is the front that the results store shows of the same points") {
   const Tuning tuning;
-  const CommandResult result = tuning.run("--budget 1000s --output direct --metric rmse --json");
+  const CommandResult result = tuning.run("--frame-time 1000s --output direct --metric rmse --json");
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   using Front = std::map<std::string, bool>;
@@ -127,10 +127,11 @@ TEST_CASE("contradicting or unknown wishes for tuning are refused") {
     CHECK(result.exitCode == 2);
     CHECK(result.errors.find(part) != std::string::npos);
   };
-  refused("", "a budget or an error");
-  refused("--budget 16ms --error 1", "excludes");
-  refused("--budget 16parsecs", "16ms or 0.5s");
-  refused("--budget -1ms", "above 0");
+  refused("", "a frame time or an error");
+  refused("--budget 16ms", "a budget is time for measuring; expected --frame-time 16ms");
+  refused("--frame-time 16ms --error 1", "excludes");
+  refused("--frame-time 16parsecs", "16ms or 0.5s");
+  refused("--frame-time -1ms", "above 0");
   refused("--error 0", "above 0");
   refused("--error 1 --metric flop", "did you mean 'flip'");
   refused("--error 1 --metric ssim", "expected one of");

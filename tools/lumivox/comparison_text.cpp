@@ -42,7 +42,7 @@ std::string frontText(const PipelineComparison& comparison) {
                     measuredText(point.tradeOff.error), standing});
   }
   std::string text = textTable(rows, 2);
-  for (const BudgetRange& range : comparison.ranges) {
+  for (const FrameTimeRange& range : comparison.ranges) {
     text += fmt::format("from {} ms{}: ", formatMilliseconds(range.fromMs),
                         range.toMs ? fmt::format(" to {} ms", formatMilliseconds(*range.toMs)) : " on");
     for (std::size_t i = 0; i < range.best.size(); ++i)
@@ -112,7 +112,7 @@ std::string tableText(const PipelineComparison& comparison, ComparisonTable tabl
     case ComparisonTable::front:
       return title + frontText(comparison);
     case ComparisonTable::equalTime:
-      return title + equalText(comparison, comparison.budgetsMs, " ms", "slower", measuredText,
+      return title + equalText(comparison, comparison.frameTimesMs, " ms", "slower", measuredText,
                                &ComparedPipeline::atTime);
     case ComparisonTable::equalError:
       break;

@@ -85,6 +85,14 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global) {
   return arguments;
 }
 
+void refuseFrameTimeAsBudget(CLI::App& app) {
+  const auto refuse = [](const std::string& value) {
+    throw CLI::ValidationError(
+        fmt::format("--budget '{}': a budget is time for measuring; expected --frame-time {}", value, value));
+  };
+  app.add_option_function<std::string>("--budget", refuse)->group("");
+}
+
 double positiveNumberOf(const std::string& option, const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);

@@ -27,6 +27,9 @@ std::function<void(std::size_t, std::size_t, double)> progressLine(const std::st
 
 /// The options of every command that a repeating one needs too.
 std::vector<std::string> repeatArguments(const GlobalOptions& global);
+/// A budget is time for measuring, in every command: in one that takes a frame's time, an Error names
+/// --frame-time. In no help.
+void refuseFrameTimeAsBudget(CLI::App& app);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 

@@ -238,7 +238,7 @@ void addReportCommand(Commands& commands) {
       ->check(CLI::Range(1, 1024));
   addRepeatable(
       *command, "--equal-time", all->equalTimes,
-      "a budget of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
+      "a frame time of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*command, "--equal-error", all->equalErrors,
                 "an error of the table of equal error; may be repeated (default: round numbers)");
   command->add_flag(

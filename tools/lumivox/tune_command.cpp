@@ -17,7 +17,7 @@ constexpr double kLargestErrorLimit = 1e37;
 struct TuneCommand {
   MeasureOptions measure;
   TuneOptions tune;
-  double error = 0.0, budgetSeconds = 0.0;
+  double error = 0.0, frameTimeSeconds = 0.0;
   bool hasError = false, json = false, csv = false;
   std::filesystem::path output;
 };
@@ -35,8 +35,8 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
                                        : ""});
   }
   std::string text = rows.size() > 1 ? textTable(rows, 2) : std::string();
-  const std::string limit = options.budgetMs
-                                ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
+  const std::string limit = options.frameTimeMs
+                                ? fmt::format("{} ms", formatMilliseconds(*options.frameTimeMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
   text += fmt::format(
       "{} points measured{}; limit {}; only the Pareto front is shown\n", result.seen.size(),
@@ -68,7 +68,7 @@ Json resultJson(const TuneResult& result) {
 int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   TuneOptions options = command.tune;
   options.measure = command.measure.asked(global, "tuning", "points at most");
-  if (command.budgetSeconds > 0.0) options.budgetMs = 1000.0 * command.budgetSeconds;
+  if (command.frameTimeSeconds > 0.0) options.frameTimeMs = 1000.0 * command.frameTimeSeconds;
   if (command.hasError) options.errorLimit = command.error;
   std::vector<std::filesystem::path> inputs = options.measure.scenes;
   inputs.insert(inputs.end(), options.measure.pipelines.begin(), options.measure.pipelines.end());
@@ -105,7 +105,9 @@ void addTuneCommand(Commands& commands) {
   auto all = std::make_shared<TuneCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
-  auto* budget = addDuration(*command, "--budget", all->budgetSeconds, "time limit of a frame, such as 16ms");
+  auto* frameTime =
+      addDuration(*command, "--frame-time", all->frameTimeSeconds, "time limit of a frame, such as 16ms");
+  refuseFrameTimeAsBudget(*command);
   auto* error = command->add_option_function<double>(
       "--error",
       [all](double value) {
@@ -114,7 +116,7 @@ void addTuneCommand(Commands& commands) {
       },
       "error limit, in the unit of the metric");
   error->check(numberBetween(0.0, kLargestErrorLimit));
-  budget->excludes(error);
+  frameTime->excludes(error);
   command->add_option("--metric", all->tune.metric,
                       "flip (default), rmse, relative_mse, percentile95, flip_ldr, ...");
   command->add_option("--output", all->tune.output,

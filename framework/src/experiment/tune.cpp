@@ -176,7 +176,7 @@ class Search {
   /// Of the points that fit, the one with the least error, or the least time.
   std::optional<std::size_t> best() const {
     const auto cost = [&](const Seen& one) {
-      return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
+      return options_.frameTimeMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
     };
     std::optional<std::size_t> result;
     for (std::size_t i = 0; i < seen_.size(); ++i)
@@ -206,8 +206,8 @@ class Search {
 
   /// Whether a point lies within so many times the limit.
   bool withinLimit(const TradeOff& point, double times) const {
-    return options_.budgetMs ? point.timeMs.value <= times * *options_.budgetMs
-                             : point.error.value <= times * *options_.errorLimit;
+    return options_.frameTimeMs ? point.timeMs.value <= times * *options_.frameTimeMs
+                                : point.error.value <= times * *options_.errorLimit;
   }
 
   void addNeighbours(const WantedPoint& wanted, std::vector<WantedPoint>& result) {
@@ -274,9 +274,9 @@ class Search {
 
 void requireSensible(const TuneOptions& options) {
   if (options.measure.scenes.size() != 1) throw Error("tuning needs exactly one scene");
-  if (options.budgetMs.has_value() == options.errorLimit.has_value())
-    throw Error("tuning needs a budget or an error, one of the two");
-  if (options.budgetMs && !(*options.budgetMs > 0.0)) throw Error("the budget must be above 0 ms");
+  if (options.frameTimeMs.has_value() == options.errorLimit.has_value())
+    throw Error("tuning needs a frame time or an error, one of the two");
+  if (options.frameTimeMs && !(*options.frameTimeMs > 0.0)) throw Error("the frame time must be above 0 ms");
   if (options.errorLimit && !(*options.errorLimit > 0.0)) throw Error("the error must be above 0");
   requireErrorMetric(options.metric);
 }

@@ -46,7 +46,7 @@ std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& po
 enum class Reach {
   interpolated,  ///< between two measured points, or at one
   atMost,        ///< the last measured point has this much already: less is not measured
-  notReached,    ///< every measured point is slower than the budget, or has more error
+  notReached,    ///< every measured point takes longer, or has more error
   notMeasured    ///< there is no point
 };
 const char* name(Reach reach);  ///< "not_reached"
