@@ -70,7 +70,7 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
         "one_bounce_diffuse");
 
   const CommandResult text = swept.results("front");
-  CHECK(contains(text.output, "on the Pareto front"));
+  CHECK(contains(text.output, "on the front"));
   CHECK(contains(text.output, "room, camera main, 24x16"));
   CHECK(contains(swept.results("equal-time --frame-time 1000s").output, "<= "));
   CHECK(contains(swept.results("equal-error --error 1e-9").output, "not reached"));
