@@ -162,7 +162,7 @@ TEST_CASE("stored runs and their front have one line a run at 80 columns, and ev
   };
   const std::string list = at(80, "list");
   INFO(list);
-  static const std::regex run(" *[0-9]+  fast value=[1-4]  +[0-9.]+  [0-9.]+ ± [0-9.e-]+ +good\n");
+  static const std::regex run(" *[0-9]+  fast value=[1-4]  +[0-9.]+  +[0-9.e-]+ ± [0-9.e-]+ +good\n");
   CHECK(std::distance(std::sregex_iterator(list.begin(), list.end(), run), std::sregex_iterator()) == 4);
   CHECK(countOf(list, "Pipeline") == 1);
   CHECK(contains(at(160, "list"), "Memory"));
