@@ -69,7 +69,7 @@ StoredRun storedAt(const ReportPoint& point, const std::string& created, const s
 }  // namespace
 
 TEST_CASE(
-    "the pipelines on the Pareto front are named by budget, and a beaten one is told with who beats it") {
+    "the pipelines on the Pareto front are named by frame time, and a beaten one is told with who beats it") {
   const PipelineComparison comparison = compared(threePipelines());
   const std::size_t coarse = pipelineNamed(comparison, "coarse"), fine = pipelineNamed(comparison, "fine");
   const std::size_t poor = pipelineNamed(comparison, "poor");
@@ -105,7 +105,7 @@ TEST_CASE("pipelines within the uncertainty of the best are told with it") {
 
 TEST_CASE("equal time and equal error follow each pipeline's own measured points and mark the best") {
   const PipelineComparison comparison = compared(threePipelines(), {{40.0, 2.0, 200.0}, {0.05, 0.3}});
-  CHECK(comparison.budgetsMs == std::vector<double>{2.0, 40.0, 200.0});
+  CHECK(comparison.frameTimesMs == std::vector<double>{2.0, 40.0, 200.0});
   const ComparedPipeline& coarse = comparison.pipelines[pipelineNamed(comparison, "coarse")];
   const ComparedPipeline& fine = comparison.pipelines[pipelineNamed(comparison, "fine")];
   // coarse falls from 0.4 to 0.2 between 1 and 4 ms: as the square root of the time.

@@ -63,7 +63,8 @@ TEST_CASE("between measured points a power law of error against time is met exac
   }
 }
 
-TEST_CASE("nothing is extrapolated: a budget below every point is not reached, one above them says at most") {
+TEST_CASE(
+    "nothing is extrapolated: a frame time below every point is not reached, one above them says at most") {
   const std::vector<TradeOff> points = powerLaw(1.0, -1.0);
   const std::vector<std::size_t> front = frontByValue(points);
   CHECK(errorAtTime(points, front, 0.99).reach == Reach::notReached);
@@ -173,7 +174,32 @@ TEST_CASE("two points within their uncertainties are both on the Pareto front") 
   CHECK(front[2] == std::size_t{1});
 }
 
-TEST_CASE("budgets are round numbers within what was measured, at least three where there is room") {
+TEST_CASE(
+    "of points that cannot be told apart from the least, the one with the least of the other number is chosen") {
+  // Errors of 0.378 at 35 ms and 0.379 at 17 ms; the third is certainly worse, the last does not fit.
+  const std::vector<TradeOff> points{at(35.3, 0.378, 0.1, 0.001), at(17.3, 0.379, 0.1, 0.001),
+                                     at(10.0, 0.39, 0.1, 0.001), at(90.0, 0.1, 0.1, 0.001)};
+  const std::vector<std::size_t> fitting{0, 1, 2};
+  CHECK(leastOf(points, fitting, &TradeOff::error) == std::size_t{0});
+  CHECK(leastWithinNoise(points, fitting, &TradeOff::error) == std::size_t{1});
+  CHECK(leastWithinNoise(points, {0, 2}, &TradeOff::error) == std::size_t{0});
+  CHECK_FALSE(leastWithinNoise(points, {}, &TradeOff::error));
+  // The other way round: a time within 5 % is the same, and the least error decides.
+  const std::vector<TradeOff> quick{at(10.0, 0.4), at(10.4, 0.2), at(10.6, 0.1)};
+  CHECK(leastWithinNoise(quick, {0, 1, 2}, &TradeOff::timeMs) == std::size_t{1});
+  CHECK(leastWithinNoise(quick, {0, 1, 2}, &TradeOff::timeMs, 0.1) == std::size_t{2});
+}
+
+TEST_CASE("what has too few repeats is not chosen for another, nor another for it") {
+  std::vector<TradeOff> points{at(35.3, 0.378, 0.1, 0.001), at(17.3, 0.379, 0.1, 0.001)};
+  points[1].error.enoughRepeats = false;
+  CHECK(leastWithinNoise(points, {0, 1}, &TradeOff::error) == std::size_t{0});
+  std::swap(points[0].error.enoughRepeats, points[1].error.enoughRepeats);
+  CHECK(leastWithinNoise(points, {0, 1}, &TradeOff::error) == std::size_t{0});
+}
+
+TEST_CASE(
+    "frame times of tables are round numbers within what was measured, at least three where there is room") {
   CHECK(roundNumbers(0.9, 60.0) == std::vector<double>{1, 2, 5, 10, 20, 50});
   CHECK(roundNumbers(0.02, 0.2) == std::vector<double>{0.02, 0.05, 0.1, 0.2});
   CHECK(roundNumbers(10.0, 21.0) == std::vector<double>{10, 15, 20});

@@ -58,9 +58,9 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
 
   // Between the two times one of the pipelines is slower, beyond them neither.
   const std::string between = std::to_string(0.5 * (quick + slow));
-  for (const auto& pipeline : swept.json("equal-time --budget " + between + "ms").at("pipelines"))
+  for (const auto& pipeline : swept.json("equal-time --frame-time " + between + "ms").at("pipelines"))
     CHECK(pipeline.at("equal_time").size() == 1);
-  for (const auto& pipeline : swept.json("equal-time --budget 1000s").at("pipelines"))
+  for (const auto& pipeline : swept.json("equal-time --frame-time 1000s").at("pipelines"))
     CHECK(pipeline.at("equal_time").at(0).at("reach") == "at_most");
   for (const auto& pipeline : swept.json("equal-error --error 1e-9").at("pipelines"))
     CHECK(pipeline.at("equal_error").at(0).at("reach") == "not_reached");
@@ -70,9 +70,9 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
         "one_bounce_diffuse");
 
   const CommandResult text = swept.results("front");
-  CHECK(contains(text.output, "on the Pareto front"));
+  CHECK(contains(text.output, "on the front"));
   CHECK(contains(text.output, "room, camera main, 24x16"));
-  CHECK(contains(swept.results("equal-time --budget 1000s").output, "<= "));
+  CHECK(contains(swept.results("equal-time --frame-time 1000s").output, "<= "));
   CHECK(contains(swept.results("equal-error --error 1e-9").output, "not reached"));
   CHECK(contains(swept.results("front --component scattered").output, "no run has"));
 }
@@ -83,8 +83,9 @@ TEST_CASE("comparisons that make no sense are refused with what was expected") {
     checkRefused(runCommand("lumivox results " + arguments + " --store '" + place.file("none.sqlite") + "'"),
                  named);
   };
-  refused("equal-time --budget -3ms", "--budget '-3ms'");
-  refused("equal-time --budget 3kg", "expected a time above 0");
+  refused("equal-time --frame-time -3ms", "--frame-time '-3ms'");
+  refused("equal-time --budget 16ms", "a budget is time for measuring; expected --frame-time 16ms");
+  refused("equal-time --frame-time 3kg", "expected a time above 0");
   refused("equal-error --error nothing", "expected a number above 0");
   refused("front --metric flop", "did you mean 'flip'");
   refused("front --component indirect_difuse", "did you mean 'indirect_diffuse'");

@@ -81,7 +81,7 @@ TEST_CASE("numbers of options that nothing could be computed with are refused, a
   checkRefused(runCommand("lumivox reproduce --scale nan"), "--scale");
   checkRefused(runCommand("lumivox cache prune --unused-for nan"), "--unused-for");
   checkRefused(runCommand("lumivox tune --error nan " + quoted(place.scene())), "--error");
-  checkRefused(runCommand("lumivox tune --budget 1e300s " + quoted(place.scene())), "--budget");
+  checkRefused(runCommand("lumivox tune --frame-time 1e300s " + quoted(place.scene())), "--frame-time");
 }
 
 TEST_CASE("check names the numbers of a scene that render would have made NaN or black of") {
@@ -165,8 +165,8 @@ TEST_CASE("an output that is an input, another output or a file of another kind 
     checkRefused(runCommand("lumivox report" + room + quoted(place.file(name)) + " -o " +
                             quoted(place.file("page.html"))),
                  "is read; expected another name");
-  checkRefused(runCommand("lumivox tune --budget 16ms" + room + quoted(place.file("own.pipeline")) + " -o " +
-                          quoted(place.file("own.pipeline"))),
+  checkRefused(runCommand("lumivox tune --frame-time 16ms" + room + quoted(place.file("own.pipeline")) +
+                          " -o " + quoted(place.file("own.pipeline"))),
                "is read; expected another name");
   const std::string waiting = place.file("page.unfinished.sqlite");
   std::filesystem::copy_file(store, waiting);
@@ -221,15 +221,15 @@ TEST_CASE("an output that is an input, another output or a file of another kind 
   place.write("scenes/pipelines/beside.pipeline", direct);
   for (const char* name : {"room.obj", "room.mtl", "room.scene"})
     std::filesystem::copy_file(place.path() / name, place.path() / "scenes" / name);
-  checkRefused(runCommand("lumivox tune -q --budget 16ms " + quoted(place.file("scenes/room.scene")) + small +
-                          " -o " + quoted(place.file("scenes/pipelines/beside.pipeline"))),
+  checkRefused(runCommand("lumivox tune -q --frame-time 16ms " + quoted(place.file("scenes/room.scene")) +
+                          small + " -o " + quoted(place.file("scenes/pipelines/beside.pipeline"))),
                "was read for the same work");
   CHECK(place.read("scenes/pipelines/beside.pipeline") == direct);
   place.write("rest", "material grey { diffuse 0.5 }\n");
   place.write(
       "included.scene",
       std::string(kRoomScene).replace(std::string(kRoomScene).rfind('}'), 1, "  include \"rest\"\n}"));
-  for (const char* command : {"tune --budget 16ms", "report"})
+  for (const char* command : {"tune --frame-time 16ms", "report"})
     checkRefused(
         runCommand(std::string("lumivox ") + command + " -q " + quoted(place.file("included.scene")) +
                    " --pipeline " + quoted(committedPipeline("direct_lighting")) + small + " -o " +

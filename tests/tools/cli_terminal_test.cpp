@@ -68,7 +68,7 @@ TEST_CASE(
   }
   const CommandResult tuned =
       runCommand(place.program() + "tune " + inputs + place.quick() +
-                 "--budget 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
+                 "--frame-time 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
   INFO(tuned.errors);
   CHECK(contains(tuned.errors, "tuning: 1 of 6 points at most, about "));
   const CommandResult voxels = runCommand("lumivox voxels " + place.quoted("room.scene") +
@@ -123,7 +123,7 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
       {"list pipelines", {"voxel_cone_tracing", ".pipeline"}},
       {"list passes", {"direct_lighting.gbuffer"}},
       {"stress --list", {"camera_on_surface", "cells"}},
-      {"results list --store " + store, {"value=4", "Memory", "good"}},
+      {"results list --store " + store, {"fast value=4", "good"}},
       {"results front --store " + store, {"value=4"}},
       {"compare " + image + " " + image, {"RMSE", "FLIP LDR", "NaN or Inf", "indirect_diffuse"}},
       {"voxels -q " + room + " --resolution 8 --repeats 1 --pipeline '" + conservative + "'",
@@ -149,6 +149,32 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
     }
 }
 
+TEST_CASE("stored runs and their front have one line a run at 80 columns, and everything at 160") {
+  const Place place;
+  const std::string store = place.quoted("results.sqlite");
+  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
+                     place.quoted("fast.pipeline") + place.quick() + "--store " + store)
+              .exitCode == 0);
+  const auto at = [&](int columns, const std::string& what) {
+    return runCommand("COLUMNS=" + std::to_string(columns) + " " +
+                      (binaryDirectory() / "bin/lumivox").string() + " results " + what + " --store " + store)
+        .output;
+  };
+  const std::string list = at(80, "list");
+  INFO(list);
+  static const std::regex run(" *[0-9]+  fast value=[1-4]  +[0-9.]+  +[0-9.e-]+ ± [0-9.e-]+ +good\n");
+  CHECK(std::distance(std::sregex_iterator(list.begin(), list.end(), run), std::sregex_iterator()) == 4);
+  CHECK(countOf(list, "Pipeline") == 1);
+  CHECK(contains(at(160, "list"), "Memory"));
+  const std::string front = at(80, "front --component whole_image");
+  INFO(front);
+  static const std::regex point(
+      " *[1-4]  fast value=[1-4]  +[0-9.]+  +[0-9.]+ ± [0-9.e-]+ +(on the front|beaten by "
+      "[1-4]|undecided)\n");
+  CHECK(std::distance(std::sregex_iterator(front.begin(), front.end(), point), std::sregex_iterator()) == 4);
+  CHECK(contains(at(160, "front"), "Parameters"));
+}
+
 TEST_CASE("no word of a table is cut that fits the terminal, though lines behind the first are indented") {
   const Place place;
   const std::string store = place.quoted("results.sqlite");
@@ -157,7 +183,8 @@ TEST_CASE("no word of a table is cut that fits the terminal, though lines behind
       "long.pipeline",
       "pipeline \"Long\" {\n  param a 1 in 0..10\n  param smoke_resolution_of_it 6 in 0..10\n"
       "  pass paint hostile.paint { deed paint  value $a }\n  pass other hostile.paint { deed paint  value "
-      "$smoke_resolution_of_it }\n\n  output direct paint.radiance\n}\n");
+      "$smoke_resolution_of_it }\n\n  output direct paint.radiance\n}\n\n"
+      "sweep both { a [1 2]  smoke_resolution_of_it [6 7] }\n");
   REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
                      place.quoted("long.pipeline") + place.quick() + "--store " + store)
               .exitCode == 0);
@@ -273,7 +300,7 @@ TEST_CASE("times have units as in the texts, and a budget without one is refused
   checkRefused(runCommand("lumivox report " + room + " --budget 30"),
                "--budget '30': expected a time above 0 with its unit (s, ms or min)");
   checkRefused(runCommand("lumivox report " + room + " --budget 0s"), "above 0");
-  checkRefused(runCommand("lumivox tune " + room + " --budget 16"), "--budget '16'");
+  checkRefused(runCommand("lumivox tune " + room + " --frame-time 16"), "--frame-time '16'");
   checkRefused(runCommand("lumivox stress --time-limit 3"), "--time-limit '3'");
   checkRefused(runCommand("lumivox report " + room + " --equal-time 3"), "--equal-time '3'");
   const std::string render = "lumivox render " + room + " '" + committedPipeline("direct_lighting") +

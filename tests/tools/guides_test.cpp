@@ -282,13 +282,13 @@ TEST_CASE("results stay as their guide says") {
   CHECK(contains(guide.of("compare-runs").output, "4 points compared, 0 of "));
   REQUIRE(guide.says("`-o` writes the winning text with its parameters as defaults"));
   REQUIRE(guide.says("Exit code 1: nothing fits"));
-  for (const char* part : {"tune scenes/cornell.scene --budget", "tune scenes/cornell.scene --error"}) {
+  for (const char* part : {"tune scenes/cornell.scene --frame-time", "tune scenes/cornell.scene --error"}) {
     const CommandResult& tuned = guide.of(part);
     INFO(part << tuned.output << tuned.errors);
     CHECK((tuned.exitCode == 0) != contains(tuned.output, "nothing fits"));
     CHECK(tuned.exitCode <= 1);
   }
-  if (guide.of("--budget 100ms").exitCode == 0)
+  if (guide.of("--frame-time 100ms").exitCode == 0)
     CHECK(guide.run("lumivox check out/best.pipeline").exitCode == 0);
 }
 

@@ -260,7 +260,7 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   CHECK(summary[1][5] == "0.500 ± 0.005");
   CHECK(summary[1][7] == "on the Pareto front");
   CHECK(summary[7][8] == "failed");
-  const Json ranges = tableWith(page, {"Budget, ms", "Least error"});
+  const Json ranges = tableWith(page, {"Frame time, ms", "Least error"});
   REQUIRE(ranges.size() > 2);
   CHECK(ranges[1][2] == "one&<i>");
   const Json needed = tableWith(page, {"Pipeline", "Passes", "Variants"});

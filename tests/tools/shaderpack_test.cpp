@@ -98,6 +98,21 @@ TEST_CASE("an error in an included file is reported there, once for all variants
   for (std::string line; std::getline(lines, line);) CHECK(distinct.insert(line).second);
 }
 
+TEST_CASE("the text of the line stands once below the errors that the compiler finds in it") {
+  Project project;
+  const auto included = project.writeCommon("wrong.glsl", "float wrong() {\r\n\treturn first;\r\n}\r\n");
+  project.write("a.comp", "#include \"common/wrong.glsl\"\n" + kCompute + "void main() {}\n");
+  project.write("b.comp", kCompute + "void main() {\n  values[0] = second;\n}\n");
+  const std::string errors = project.errors();
+  INFO(errors);
+  CHECK_THAT(errors, Catch::Contains(included.string() + ":2: error: 'first'"));
+  for (const std::string line : {"\n  \treturn first;\n", "\n    values[0] = second;\n"}) {
+    const std::size_t shown = errors.find(line);
+    REQUIRE(shown != std::string::npos);
+    CHECK(errors.find(line, shown + 1) == std::string::npos);
+  }
+}
+
 TEST_CASE("all programs' errors are reported together") {
   Project project;
   project.write("a.comp", kCompute + "void main() { first(); }\n");

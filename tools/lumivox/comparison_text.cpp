@@ -28,7 +28,32 @@ std::string timeText(const Measured& timeMs) {
   return formatMilliseconds(timeMs.value) + " ± " + formatMilliseconds(timeMs.uncertainty);
 }
 
-std::string frontText(const PipelineComparison& comparison) {
+/// One line a point: its pipeline with the parameters that tell it from others; a point that beats it is
+/// named by its number.
+std::string shortFrontTable(const PipelineComparison& comparison) {
+  std::vector<ReportPoint> records(comparison.points.size());
+  std::vector<const ReportPoint*> points;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i].pipeline = comparison.pipelines[comparison.points[i].pipeline].pipeline;
+    records[i].parameters = comparison.points[i].parameters;
+    points.push_back(&records[i]);
+  }
+  const std::vector<std::string> names = lineNames(points);
+  std::vector<std::vector<std::string>> rows{{"Point", "Pipeline", "Frame ms", comparison.metric, ""}};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const ComparedPoint& point = comparison.points[i];
+    const bool undecided = !point.tradeOff.timeMs.enoughRepeats || !point.tradeOff.error.enoughRepeats;
+    rows.push_back({std::to_string(i + 1), names[i], formatMilliseconds(point.frameMs.median),
+                    measuredText(point.tradeOff.error),
+                    point.beatenBy ? fmt::format("beaten by {}", *point.beatenBy + 1)
+                    : undecided    ? "undecided"
+                                   : "on the front"});
+  }
+  return textTable(rows, 2);
+}
+
+std::string frontTable(const PipelineComparison& comparison) {
+  if (outputColumns() < kWideColumns) return shortFrontTable(comparison);
   std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", comparison.metric, ""}};
   for (const ComparedPoint& point : comparison.points) {
     std::string standing = "on the Pareto front";
@@ -41,8 +66,12 @@ std::string frontText(const PipelineComparison& comparison) {
     rows.push_back({nameOf(comparison, point.pipeline), parametersOf(point), quartilesText(point.frameMs),
                     measuredText(point.tradeOff.error), standing});
   }
-  std::string text = textTable(rows, 2);
-  for (const BudgetRange& range : comparison.ranges) {
+  return textTable(rows, 2);
+}
+
+std::string frontText(const PipelineComparison& comparison) {
+  std::string text = frontTable(comparison);
+  for (const FrameTimeRange& range : comparison.ranges) {
     text += fmt::format("from {} ms{}: ", formatMilliseconds(range.fromMs),
                         range.toMs ? fmt::format(" to {} ms", formatMilliseconds(*range.toMs)) : " on");
     for (std::size_t i = 0; i < range.best.size(); ++i)
@@ -112,7 +141,7 @@ std::string tableText(const PipelineComparison& comparison, ComparisonTable tabl
     case ComparisonTable::front:
       return title + frontText(comparison);
     case ComparisonTable::equalTime:
-      return title + equalText(comparison, comparison.budgetsMs, " ms", "slower", measuredText,
+      return title + equalText(comparison, comparison.frameTimesMs, " ms", "slower", measuredText,
                                &ComparedPipeline::atTime);
     case ComparisonTable::equalError:
       break;

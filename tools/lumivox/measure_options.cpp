@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
@@ -96,6 +98,14 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global) {
   return arguments;
 }
 
+void refuseFrameTimeAsBudget(CLI::App& app) {
+  const auto refuse = [](const std::string& value) {
+    throw CLI::ValidationError(
+        fmt::format("--budget '{}': a budget is time for measuring; expected --frame-time {}", value, value));
+  };
+  app.add_option_function<std::string>("--budget", refuse)->group("");
+}
+
 double positiveNumberOf(const std::string& option, const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -115,6 +125,30 @@ std::string parametersText(const std::map<std::string, std::string>& parameters)
   std::string text;
   for (const auto& [name, value] : parameters) text += (text.empty() ? "" : " ") + name + "=" + value;
   return text;
+}
+
+std::vector<std::string> lineNames(const std::vector<const ReportPoint*>& points) {
+  struct Group {
+    std::size_t points = 0;
+    std::map<std::string, std::map<std::string, std::size_t>> values;  ///< of each parameter, and how often
+  };
+  std::map<std::pair<std::string, std::string>, Group> groups;
+  for (const ReportPoint* point : points) {
+    Group& group = groups[{point->scene, point->pipeline}];
+    ++group.points;
+    for (const auto& [name, value] : point->parameters) ++group.values[name][value.text()];
+  }
+  std::vector<std::string> names;
+  for (const ReportPoint* point : points) {
+    const Group& group = groups.at({point->scene, point->pipeline});
+    std::map<std::string, std::string> differing;
+    for (const auto& [name, value] : point->parameters) {
+      const std::string text = value.text();
+      if (group.values.at(name).at(text) != group.points) differing[name] = text;
+    }
+    names.push_back(shortName(point->pipeline) + (differing.empty() ? "" : " " + parametersText(differing)));
+  }
+  return names;
 }
 
 const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias) {

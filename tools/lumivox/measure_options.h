@@ -31,12 +31,20 @@ std::function<void(std::size_t, std::size_t, double)> progressLine(const std::st
 
 /// The options of every command that a repeating one needs too.
 std::vector<std::string> repeatArguments(const GlobalOptions& global);
+/// A budget is time for measuring, in every command: in one that takes a frame's time, an Error names
+/// --frame-time. In no help.
+void refuseFrameTimeAsBudget(CLI::App& app);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 
 std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
 /// "cones=6 resolution=64"
 std::string parametersText(const std::map<std::string, std::string>& parameters);
+/// So many columns have room for each output and all parameters; tables of fewer have one line a point.
+inline constexpr int kWideColumns = 120;
+/// For each point its pipeline, and of its parameters those in which the points of its scene and pipeline
+/// differ: "direct samples=4".
+std::vector<std::string> lineNames(const std::vector<const ReportPoint*>& points);
 /// "0.0123 ± 0.0004", in kDefaultMetric. Empty for null.
 std::string errorText(const ComponentError* error);
 /// Over a column of them: "FLIP, all light" for the whole image, which is judged against full transport, else

@@ -26,24 +26,6 @@ struct ReportCommand {
   bool json = false, csv = false, brief = false;
 };
 
-/// The pipeline of a point; and of its parameters those in which its lines differ.
-std::vector<std::string> lineNames(const std::vector<ReportPoint>& points) {
-  std::vector<std::string> names;
-  for (const ReportPoint& point : points) {
-    std::map<std::string, std::string> differing;
-    for (const auto& [name, value] : point.parameters)
-      for (const ReportPoint& other : points) {
-        if (other.pipeline != point.pipeline || other.scene != point.scene) continue;
-        const auto there = other.parameters.find(name);
-        if (there == other.parameters.end() || there->second.text() != value.text())
-          differing[name] = value.text();
-      }
-    names.push_back(std::filesystem::path(point.pipeline).stem().string() +
-                    (differing.empty() ? "" : " " + parametersText(differing)));
-  }
-  return names;
-}
-
 /// "12.5 % (1.0 of 8.0 ms)", or empty where leaving out does not make a frame shorter.
 std::string savingText(double share, const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   if (!decidable(medianOf(unpruned), medianOf(pruned)) ||
@@ -113,10 +95,9 @@ std::string verdict(const std::vector<const ReportPoint*>& points, const std::ve
 void printSummary(const ReportSummary& summary, const ReportOptions& options) {
   std::vector<const ReportPoint*> points;
   for (const ReportPoint& point : summary.points) points.push_back(&point);
-  const std::vector<std::string> names = lineNames(summary.points);
-  constexpr int kWide = 120;  // columns: room for each output
+  const std::vector<std::string> names = lineNames(points);
   std::vector<std::string> outputs;
-  if (outputColumns() >= kWide)
+  if (outputColumns() >= kWideColumns)
     for (const std::string& output : judgedOutputs(points))
       if (output != kWholeImage) outputs.push_back(output);
 
@@ -243,7 +224,7 @@ void addReportCommand(Commands& commands) {
       ->check(CLI::Range(1, 1024));
   addRepeatable(
       *command, "--equal-time", all->equalTimes,
-      "a budget of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
+      "a frame time of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*command, "--equal-error", all->equalErrors,
                 "an error of the table of equal error; may be repeated (default: round numbers)");
   command->add_flag(

@@ -32,7 +32,7 @@ struct ResultsCommand {
   std::vector<std::filesystem::path> others;
   bool all = false, dryRun = false, json = false;
   std::string component, metric = kDefaultMetric, against;  ///< empty: what is shown first
-  std::vector<std::string> budgets, errors;
+  std::vector<std::string> frameTimes, errors;
 
   std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
   RunFilter asked() const {
@@ -161,8 +161,8 @@ std::vector<PipelineComparison> askedComparisons(const ResultsCommand& command,
 int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
   requireErrorMetric(command.metric);
   ComparisonLimits limits;
-  for (const std::string& text : command.budgets)
-    limits.budgetsMs.push_back(1000.0 * secondsOf("--budget", text));
+  for (const std::string& text : command.frameTimes)
+    limits.frameTimesMs.push_back(1000.0 * secondsOf("--frame-time", text));
   for (const std::string& text : command.errors) limits.errors.push_back(positiveNumberOf("--error", text));
   if (!command.component.empty()) componentNamed(command.component);
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
@@ -419,10 +419,11 @@ void addResultsCommands(Commands& commands) {
   };
   addComparison("front", "lists the pipelines that no other beats in both time and error",
                 ComparisonTable::front);
-  addRepeatable(*addComparison("equal-time", "the error that each pipeline reaches within a time",
-                               ComparisonTable::equalTime),
-                "--budget", command->budgets,
-                "a time, such as 16ms; may be repeated (default: round numbers)");
+  auto* equalTime = addComparison("equal-time", "the error that each pipeline reaches within a frame time",
+                                  ComparisonTable::equalTime);
+  addRepeatable(*equalTime, "--frame-time", command->frameTimes,
+                "a frame time, such as 16ms; may be repeated (default: round numbers)");
+  refuseFrameTimeAsBudget(*equalTime);
   addRepeatable(*addComparison("equal-error", "the time that each pipeline needs for an error",
                                ComparisonTable::equalError),
                 "--error", command->errors, "an error; may be repeated (default: round numbers)");

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "lumivox/base/file.h"
 #include "lumivox/results/json.h"
+#include "lumivox/results/text.h"
 #include "measure_options.h"
 
 namespace lumivox::command {
@@ -68,16 +69,46 @@ Json identityJson(const RunIdentity& identity) {
           {"host", identity.host}};
 }
 
+std::string stateText(const ReportPoint& point) {
+  if (!point.failure.empty()) return painted(Paint::bad, "failed: ") + point.failure;
+  return point.healthFindings.empty() ? painted(Paint::good, "good")
+                                      : fmt::format("{} findings", point.healthFindings.size());
+}
+
 }  // namespace
 
 Json jsonNumber(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+namespace {
+
+/// One line a run: its pipeline with the parameters that tell it from others, time, error and state.
+std::string shortRunsTable(const std::vector<StoredRun>& runs, const std::vector<const ReportPoint*>& points,
+                           const std::string& output) {
+  const std::vector<std::string> names = lineNames(points);
+  std::vector<std::vector<std::string>> rows{{"Scene", "Run", "Pipeline", "Frame ms"}};
+  if (!output.empty()) rows[0].push_back(errorHeading(output));
+  rows[0].push_back("State");
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ReportPoint& point = *points[i];
+    std::vector<std::string> row{stem(point.scene), std::to_string(runs[i].id), names[i],
+                                 point.frameMs.repeats == 0 ? "-" : formatMilliseconds(point.frameMs.median)};
+    if (!output.empty()) row.push_back(errorText(errorOf(point, output, output != kWholeImage)));
+    row.push_back(stateText(point));
+    rows.push_back(std::move(row));
+  }
+  return groupedTable(rows, 2) + remarks(kErrorNote);
+}
+
+}  // namespace
+
 std::string runsTable(const std::vector<StoredRun>& runs) {
   std::vector<const ReportPoint*> points;
   for (const StoredRun& run : runs) points.push_back(&run.point);
   const std::vector<std::string> outputs = judgedOutputs(points);
+  if (outputColumns() < kWideColumns)
+    return shortRunsTable(runs, points, outputs.empty() ? std::string() : outputs.back());
   std::vector<std::vector<std::string>> rows{
       {"Scene", "Run", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
   for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
@@ -94,9 +125,7 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
                                  formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
       row.push_back(errorText(errorOf(point, output, output != kWholeImage)));
-    row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed: ") + point.failure
-                  : point.healthFindings.empty() ? painted(Paint::good, "good")
-                                                 : fmt::format("{} findings", point.healthFindings.size()));
+    row.push_back(stateText(point));
     rows.push_back(std::move(row));
   }
   return groupedTable(rows, 3) + remarks(kErrorNote);

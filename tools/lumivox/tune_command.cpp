@@ -17,10 +17,36 @@ constexpr double kLargestErrorLimit = 1e37;
 struct TuneCommand {
   MeasureOptions measure;
   TuneOptions tune;
-  double error = 0.0, budgetSeconds = 0.0;
+  double error = 0.0, frameTimeSeconds = 0.0;
   bool hasError = false, json = false, csv = false;
   std::filesystem::path output;
 };
+
+/// The light that is judged.
+std::string lightText(const TuneOptions& options) {
+  return options.output == kWholeImage ? "the whole image" : fmt::format("output '{}'", options.output);
+}
+
+std::string verdictText(const TuneResult& result, const TuneOptions& options, const std::string& limit) {
+  if (!result.winner)
+    return fmt::format("nothing fits within {}; judged: {} of {}\n", limit, options.metric,
+                       lightText(options));
+  const auto numbersOf = [&](const TunedPoint& point) {
+    return fmt::format("{} {} at {} ms", options.metric, threeDigits(point.tradeOff.error.value),
+                       formatMilliseconds(point.tradeOff.timeMs.value));
+  };
+  const TunedPoint& winner = result.seen[*result.winner];
+  const bool isWhole = options.output == kWholeImage;
+  std::string text = fmt::format(
+      "the best within {}: {}, {}\njudged: {}{}, {} against {}\n", limit,
+      std::filesystem::path(winner.run.point.pipeline).stem().string(), numbersOf(winner), lightText(options),
+      isWhole ? "" : fmt::format(" ({})", winner.component), options.metric, winner.reference);
+  if (result.least != result.winner)
+    text += fmt::format("the least {}, {}, cannot be told apart from it; of such points the {} is the best\n",
+                        options.frameTimeMs ? "error" : "time", numbersOf(result.seen[*result.least]),
+                        options.frameTimeMs ? "fastest" : "one with the least error");
+  return text;
+}
 
 std::string resultText(const TuneResult& result, const TuneOptions& options) {
   std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", options.metric, ""}};
@@ -35,32 +61,39 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
                                        : ""});
   }
   std::string text = rows.size() > 1 ? textTable(rows, 2) : std::string();
-  const std::string limit = options.budgetMs
-                                ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
+  const std::string limit = options.frameTimeMs
+                                ? fmt::format("{} ms", formatMilliseconds(*options.frameTimeMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
   text += fmt::format(
       "{} points measured{}; limit {}; only the Pareto front is shown\n", result.seen.size(),
       result.exhausted ? ", every neighbour of the best among them" : ", then the evaluations were used up",
       limit);
-  if (!result.winner) text += "nothing fits within " + limit + "\n";
+  text += verdictText(result, options, limit);
   for (const std::string& unsuited : result.unsuited) text += "not run: " + unsuited + "\n";
   return text;
 }
 
-Json resultJson(const TuneResult& result) {
+Json resultJson(const TuneResult& result, const TuneOptions& options) {
   Json seen = Json::array();
   for (const TunedPoint& point : result.seen)
-    seen.push_back({{"pipeline", point.run.point.pipeline},
-                    {"parameters", point.run.identity.parameters},
-                    {"time_ms", point.tradeOff.timeMs.value},
-                    {"time_uncertainty_ms", point.tradeOff.timeMs.uncertainty},
-                    {"error", point.tradeOff.error.value},
-                    {"error_uncertainty", point.tradeOff.error.uncertainty},
-                    {"on_front", point.onFront},
-                    {"fits", point.fits},
-                    {"command", point.run.point.command}});
-  return {{"seen", seen},
+    seen.push_back(
+        {{"pipeline", point.run.point.pipeline},
+         {"parameters", point.run.identity.parameters},
+         {"time_ms", point.tradeOff.timeMs.value},
+         {"time_uncertainty_ms", point.tradeOff.timeMs.uncertainty},
+         {"error", point.tradeOff.error.value},
+         {"error_uncertainty", point.tradeOff.error.uncertainty},
+         {"undecided", !point.tradeOff.timeMs.enoughRepeats || !point.tradeOff.error.enoughRepeats},
+         {"component", point.component},
+         {"reference", point.reference},
+         {"on_front", point.onFront},
+         {"fits", point.fits},
+         {"command", point.run.point.command}});
+  return {{"metric", options.metric},
+          {"output", options.output},
+          {"seen", seen},
           {"winner", result.winner ? Json(*result.winner) : Json(nullptr)},
+          {"least", result.least ? Json(*result.least) : Json(nullptr)},
           {"exhausted", result.exhausted},
           {"unsuited", result.unsuited}};
 }
@@ -68,7 +101,7 @@ Json resultJson(const TuneResult& result) {
 int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   TuneOptions options = command.tune;
   options.measure = command.measure.asked(global, "tuning", "points at most");
-  if (command.budgetSeconds > 0.0) options.budgetMs = 1000.0 * command.budgetSeconds;
+  if (command.frameTimeSeconds > 0.0) options.frameTimeMs = 1000.0 * command.frameTimeSeconds;
   if (command.hasError) options.errorLimit = command.error;
   std::vector<std::filesystem::path> inputs = options.measure.scenes;
   inputs.insert(inputs.end(), options.measure.pipelines.begin(), options.measure.pipelines.end());
@@ -84,7 +117,7 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
                                  [&](const std::filesystem::path& scene) { return global.loadScene(scene); });
   if (result.winner && !command.output.empty()) writeFileAtomically(command.output, result.pipelineText);
   if (command.json) {
-    printJson(resultJson(result));
+    printJson(resultJson(result, options));
   } else if (command.csv) {
     std::vector<StoredRun> runs;
     for (const TunedPoint& point : result.seen) runs.push_back(point.run);
@@ -105,7 +138,9 @@ void addTuneCommand(Commands& commands) {
   auto all = std::make_shared<TuneCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
-  auto* budget = addDuration(*command, "--budget", all->budgetSeconds, "time limit of a frame, such as 16ms");
+  auto* frameTime =
+      addDuration(*command, "--frame-time", all->frameTimeSeconds, "time limit of a frame, such as 16ms");
+  refuseFrameTimeAsBudget(*command);
   auto* error = command->add_option_function<double>(
       "--error",
       [all](double value) {
@@ -114,7 +149,7 @@ void addTuneCommand(Commands& commands) {
       },
       "error limit, in the unit of the metric");
   error->check(numberBetween(0.0, kLargestErrorLimit));
-  budget->excludes(error);
+  frameTime->excludes(error);
   command->add_option("--metric", all->tune.metric,
                       "flip (default), rmse, relative_mse, percentile95, flip_ldr, ...");
   command->add_option("--output", all->tune.output,

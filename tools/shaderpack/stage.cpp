@@ -6,9 +6,12 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <charconv>
+#include <fstream>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 #include <sstream>
+#include <vector>
 
 #include "lumivox/base/error.h"
 #include "shader/bytes.h"
@@ -37,25 +40,59 @@ EShLanguage languageOf(gpu::Stage stage) {
   return EShLangCompute;
 }
 
-/// glslang's "ERROR: file:line: what" in the form that editors follow: "file:line: error: what".
+/// A line of a file, without its end; empty where there is none.
+std::string lineOf(const std::string& file, int number) {
+  std::ifstream lines(file);
+  std::string line;
+  for (int i = 0; i < number; ++i)
+    if (!std::getline(lines, line)) return {};
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return line;
+}
+
+/// One line of glslang's log.
+struct LogLine {
+  bool isWarning = false;
+  SourcePlace place;
+  std::string what;
+};
+
+LogLine readLogLine(std::string line, const StageSource& source) {
+  LogLine result;
+  result.isWarning = line.rfind("WARNING: ", 0) == 0;
+  if (result.isWarning || line.rfind("ERROR: ", 0) == 0) line.erase(0, line.find(' ') + 1);
+  // The place ends at the second colon; a message without a place is about the whole entry file.
+  const std::size_t colon = line.find(": ");
+  const std::size_t number = colon == std::string::npos ? colon : line.rfind(':', colon - 1);
+  int count = 0;
+  const bool placed =
+      number != std::string::npos && number + 1 < colon &&
+      std::from_chars(line.data() + number + 1, line.data() + colon, count).ptr == line.data() + colon;
+  result.place = placed ? SourcePlace{line.substr(0, number), count, 0}
+                        : SourcePlace{source.source->entry.string(), 0, 0};
+  result.what = placed ? line.substr(colon + 2) : line;
+  return result;
+}
+
+/// glslang's "ERROR: file:line: what" in the form that editors follow: "file:line: error: what". Below the
+/// last error of a line stands the line itself. Warnings go without: their text is part of the artifact.
 std::string readableLog(const std::string& log, const StageSource& source, bool warnings) {
+  std::vector<LogLine> found;
   std::istringstream lines(log);
-  std::string text;
   for (std::string line; std::getline(lines, line);) {
-    const bool isWarning = line.rfind("WARNING: ", 0) == 0;
-    if (line.empty() || isWarning != warnings ||
-        line.find("compilation errors.  No code generated") != std::string::npos)
-      continue;
-    const std::string_view severity = isWarning ? "warning" : "error";
-    if (isWarning || line.rfind("ERROR: ", 0) == 0) line.erase(0, line.find(' ') + 1);
-    // The place ends at the second colon; a message without a place is about the whole entry file.
-    std::size_t colon = line.find(": ");
-    const std::size_t number = colon == std::string::npos ? colon : line.rfind(':', colon - 1);
-    const bool placed = number != std::string::npos && number + 1 < colon &&
-                        line.find_first_not_of("0123456789", number + 1) == colon;
-    if (!text.empty()) text += '\n';
-    text += placed ? fmt::format("{}: {}: {}", line.substr(0, colon), severity, line.substr(colon + 2))
-                   : fmt::format("{}: {}: {}", source.source->entry.string(), severity, line);
+    if (line.empty() || line.find("compilation errors.  No code generated") != std::string::npos) continue;
+    if (LogLine read = readLogLine(line, source); read.isWarning == warnings)
+      found.push_back(std::move(read));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const SourcePlace& place = found[i].place;
+    if (i > 0) text += '\n';
+    text += fmt::format("{}: {}: {}", place.text(), warnings ? "warning" : "error", found[i].what);
+    const bool isLast = i + 1 == found.size() || found[i + 1].place.text() != place.text();
+    if (warnings || !isLast) continue;
+    const std::string line = lineOf(place.file, place.line);
+    if (line.find_first_not_of(" \t") != std::string::npos) text += "\n  " + line;
   }
   return text;
 }

@@ -49,23 +49,23 @@ void fillTables(PipelineComparison& comparison, const std::vector<TradeOff>& tra
     for (std::size_t point = 0; point < tradeOffs.size(); ++point)
       if (comparison.points[point].pipeline == i) own[point] = tradeOffs[point];
     pipeline.front = frontByValue(own);
-    for (const double budget : comparison.budgetsMs)
-      pipeline.atTime.push_back({errorAtTime(tradeOffs, pipeline.front, budget)});
+    for (const double timeMs : comparison.frameTimesMs)
+      pipeline.atTime.push_back({errorAtTime(tradeOffs, pipeline.front, timeMs)});
     for (const double error : comparison.errors)
       pipeline.atError.push_back({timeAtError(tradeOffs, pipeline.front, error)});
   }
-  for (std::size_t column = 0; column < comparison.budgetsMs.size(); ++column)
+  for (std::size_t column = 0; column < comparison.frameTimesMs.size(); ++column)
     markBest(comparison.pipelines, column, &ComparedPipeline::atTime, 0.0);
   for (std::size_t column = 0; column < comparison.errors.size(); ++column)
     markBest(comparison.pipelines, column, &ComparedPipeline::atError, comparison.timeShare);
 }
 
-/// The points of the Pareto front within a budget that give the least error, one per pipeline.
-std::vector<std::size_t> bestWithin(const PipelineComparison& comparison, double budgetMs) {
+/// The points of the Pareto front within a frame time that give the least error, one per pipeline.
+std::vector<std::size_t> bestWithin(const PipelineComparison& comparison, double frameTimeMs) {
   std::vector<std::optional<std::size_t>> ofPipeline(comparison.pipelines.size());
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
     const ComparedPoint& point = comparison.points[i];
-    if (point.beatenBy || point.tradeOff.timeMs.value > budgetMs) continue;
+    if (point.beatenBy || point.tradeOff.timeMs.value > frameTimeMs) continue;
     std::optional<std::size_t>& own = ofPipeline[point.pipeline];
     if (!own || point.tradeOff.error.value < comparison.points[*own].tradeOff.error.value) own = i;
   }
@@ -304,7 +304,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs, comparison.timeShare);
   for (std::size_t i = 0; i < beaten.size(); ++i) comparison.points[i].beatenBy = beaten[i];
   comparison.front = frontByValue(tradeOffs);
-  comparison.budgetsMs = limitsOr(limits.budgetsMs, rangeOf(tradeOffs, &TradeOff::timeMs));
+  comparison.frameTimesMs = limitsOr(limits.frameTimesMs, rangeOf(tradeOffs, &TradeOff::timeMs));
   comparison.errors = limitsOr(limits.errors, rangeOf(tradeOffs, &TradeOff::error));
   fillTables(comparison, tradeOffs);
   fillRanges(comparison);
@@ -393,11 +393,11 @@ nlohmann::ordered_json toJson(const PipelineComparison& comparison) {
          {"output", pipeline.output},
          {"on_front", comparison.hasFront(i)},
          {"front", pipeline.front},
-         {"equal_time", cellsJson(comparison.budgetsMs, "ms", "error", pipeline.atTime)},
+         {"equal_time", cellsJson(comparison.frameTimesMs, "ms", "error", pipeline.atTime)},
          {"equal_error", cellsJson(comparison.errors, "error", "ms", pipeline.atError)}});
   }
   json["ranges"] = Json::array();
-  for (const BudgetRange& range : comparison.ranges)
+  for (const FrameTimeRange& range : comparison.ranges)
     json["ranges"].push_back({{"from_ms", range.fromMs},
                               {"to_ms", range.toMs ? Json(*range.toMs) : Json(nullptr)},
                               {"best", range.best}});

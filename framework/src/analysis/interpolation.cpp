@@ -99,6 +99,30 @@ std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& po
   return result;
 }
 
+std::optional<std::size_t> leastOf(const std::vector<TradeOff>& points,
+                                   const std::vector<std::size_t>& candidates, Measured TradeOff::*number) {
+  const auto least = std::min_element(
+      candidates.begin(), candidates.end(),
+      [&](std::size_t a, std::size_t b) { return (points[a].*number).value < (points[b].*number).value; });
+  return least == candidates.end() ? std::nullopt : std::optional(*least);
+}
+
+std::optional<std::size_t> leastWithinNoise(const std::vector<TradeOff>& points,
+                                            const std::vector<std::size_t>& candidates,
+                                            Measured TradeOff::*number, double timeShare) {
+  const std::optional<std::size_t> least = leastOf(points, candidates, number);
+  if (!least) return std::nullopt;
+  const bool isTime = number == &TradeOff::timeMs;
+  const Measured& best = points[*least].*number;
+  std::vector<std::size_t> alike;
+  for (const std::size_t index : candidates) {
+    const Measured& own = points[index].*number;
+    if (index == *least || (decidable(best, own) && !differ(best, own, isTime ? timeShare : 0.0)))
+      alike.push_back(index);
+  }
+  return leastOf(points, alike, isTime ? &TradeOff::error : &TradeOff::timeMs);
+}
+
 Interpolated errorAtTime(const std::vector<TradeOff>& points, const std::vector<std::size_t>& front,
                          double timeMs) {
   if (front.empty()) return {};

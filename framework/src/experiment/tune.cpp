@@ -94,7 +94,8 @@ class Search {
   std::vector<WantedPoint> neighbours() {
     std::vector<std::vector<WantedPoint>> lists;
     for (const std::size_t index : ahead()) follow(seen_[index], lists);
-    if (const std::optional<std::size_t> index = best()) follow(seen_[*index], lists);
+    if (const std::optional<std::size_t> index = leastOf(tradeOffs(), fitting(), sought()))
+      follow(seen_[*index], lists);
     // In turns, so that few evaluations are shared by all that is on the Pareto front.
     std::vector<WantedPoint> result;
     for (std::size_t i = 0; result.size() < total(lists); ++i)
@@ -110,7 +111,8 @@ class Search {
       return a.point.tradeOff.timeMs.value < b.point.tradeOff.timeMs.value;
     });
     for (const Seen& seen : seen_) result.seen.push_back(seen.point);
-    result.winner = best();
+    result.least = leastOf(tradeOffs(), fitting(), sought());
+    result.winner = leastWithinNoise(tradeOffs(), fitting(), sought(), timeShare());
     if (result.winner) {
       const WantedPoint& winner = seen_[*result.winner].wanted;
       result.pipelineText = textWith(winner.loaded->pipeline, winner.point.parameters);
@@ -155,7 +157,8 @@ class Search {
       if (error.bias != options_.bias && !only) continue;
       const Measured number = errorNumber(error, options_.metric);
       if (!std::isfinite(number.value)) continue;
-      TunedPoint point{run, {medianOf(run.point.frameMs), number}, false, false};
+      TunedPoint point{run,  {medianOf(run.point.frameMs), number}, error.component, error.reference, false,
+                       false};
       point.fits = withinLimit(point.tradeOff, 1.0);
       seen_.push_back({std::move(point), wanted, false});
     }
@@ -168,20 +171,20 @@ class Search {
   }
 
   void markFront() {
-    const std::vector<std::optional<std::size_t>> beaten =
-        beatenBy(tradeOffs(), std::max(kSignificantTimeShare, measurer_.floor().frame));
+    const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs(), timeShare());
     for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].point.onFront = !beaten[i];
   }
 
-  /// Of the points that fit, the one with the least error, or the least time.
-  std::optional<std::size_t> best() const {
-    const auto cost = [&](const Seen& one) {
-      return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
-    };
-    std::optional<std::size_t> result;
+  double timeShare() const { return std::max(kSignificantTimeShare, measurer_.floor().frame); }
+
+  /// The number that is to be least; the other one has the limit.
+  Measured TradeOff::*sought() const { return options_.frameTimeMs ? &TradeOff::error : &TradeOff::timeMs; }
+
+  /// The points of the front that fit.
+  std::vector<std::size_t> fitting() const {
+    std::vector<std::size_t> result;
     for (std::size_t i = 0; i < seen_.size(); ++i)
-      if (seen_[i].point.fits && seen_[i].point.onFront && (!result || cost(seen_[i]) < cost(seen_[*result])))
-        result = i;
+      if (seen_[i].point.fits && seen_[i].point.onFront) result.push_back(i);
     return result;
   }
 
@@ -206,8 +209,8 @@ class Search {
 
   /// Whether a point lies within so many times the limit.
   bool withinLimit(const TradeOff& point, double times) const {
-    return options_.budgetMs ? point.timeMs.value <= times * *options_.budgetMs
-                             : point.error.value <= times * *options_.errorLimit;
+    return options_.frameTimeMs ? point.timeMs.value <= times * *options_.frameTimeMs
+                                : point.error.value <= times * *options_.errorLimit;
   }
 
   void addNeighbours(const WantedPoint& wanted, std::vector<WantedPoint>& result) {
@@ -274,9 +277,9 @@ class Search {
 
 void requireSensible(const TuneOptions& options) {
   if (options.measure.scenes.size() != 1) throw Error("tuning needs exactly one scene");
-  if (options.budgetMs.has_value() == options.errorLimit.has_value())
-    throw Error("tuning needs a budget or an error, one of the two");
-  if (options.budgetMs && !(*options.budgetMs > 0.0)) throw Error("the budget must be above 0 ms");
+  if (options.frameTimeMs.has_value() == options.errorLimit.has_value())
+    throw Error("tuning needs a frame time or an error, one of the two");
+  if (options.frameTimeMs && !(*options.frameTimeMs > 0.0)) throw Error("the frame time must be above 0 ms");
   if (options.errorLimit && !(*options.errorLimit > 0.0)) throw Error("the error must be above 0");
   requireErrorMetric(options.metric);
 }

@@ -38,15 +38,15 @@ struct ComparedPipeline {
   std::string output;    ///< that is judged
   /// Its points that none of its own beats by value, by time: interpolated between, in comparison.points.
   std::vector<std::size_t> front;
-  std::vector<ComparedCell> atTime;   ///< errors, one per budget
+  std::vector<ComparedCell> atTime;   ///< errors, one per frame time
   std::vector<ComparedCell> atError;  ///< ms, one per error
 };
 
-/// From one budget to another, the points that give the least error within it: the first has the least, the
-/// others, one for each further pipeline, cannot be told apart from it. Measured points only.
-struct BudgetRange {
+/// From one frame time to another, the points that give the least error within it: the first has the least,
+/// the others, one for each further pipeline, cannot be told apart from it. Measured points only.
+struct FrameTimeRange {
   double fromMs = 0.0;
-  std::optional<double> toMs;  ///< none: for every larger budget
+  std::optional<double> toMs;  ///< none: for every larger one
   std::vector<std::size_t> best;
 };
 
@@ -58,8 +58,8 @@ struct PipelineComparison {
   std::vector<ComparedPoint> points;  ///< by time
   std::vector<ComparedPipeline> pipelines;
   std::vector<std::size_t> front;  ///< of all points by value alone: the line that bounds them
-  std::vector<double> budgetsMs, errors;
-  std::vector<BudgetRange> ranges;
+  std::vector<double> frameTimesMs, errors;
+  std::vector<FrameTimeRange> ranges;
   double timeShare = kSignificantTimeShare;  ///< that times must be apart
   int controls = 0;                          ///< that say so; 0: it is kSignificantTimeShare
   /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
@@ -70,13 +70,13 @@ struct PipelineComparison {
   /// tells nothing apart. Direct light that all pipelines make with the same passes, for instance.
   bool equalForAll = false;
 
-  /// Whether some of its points are on the Pareto front: no other pipeline beats it at their budgets.
+  /// Whether some of its points are on the Pareto front: no other pipeline beats it at their frame times.
   bool hasFront(std::size_t pipeline) const;
 };
 
-/// Budgets and errors of the tables. Empty: round numbers between the smallest and the largest measured.
+/// Frame times and errors of the tables. Empty: round numbers between the smallest and the largest measured.
 struct ComparisonLimits {
-  std::vector<double> budgetsMs, errors;
+  std::vector<double> frameTimesMs, errors;
   TimeFloor floor = {};  ///< of the device that the points were timed on
 };
 

@@ -43,10 +43,22 @@ bool beats(const TradeOff& a, const TradeOff& b, double timeShare = kSignificant
 std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points,
                                                  double timeShare = kSignificantTimeShare);
 
+/// Of `candidates`, indices into `points`, the one with the least of a number by value; of equal ones the
+/// first. None: there is no candidate.
+std::optional<std::size_t> leastOf(const std::vector<TradeOff>& points,
+                                   const std::vector<std::size_t>& candidates, Measured TradeOff::*number);
+/// What is chosen where one number has a limit and the other, `number`, is to be least: of the candidates
+/// that cannot be told apart from the least (decidable() and not differ(), for times by `timeShare` too), the
+/// one with the least of the number that has the limit.
+std::optional<std::size_t> leastWithinNoise(const std::vector<TradeOff>& points,
+                                            const std::vector<std::size_t>& candidates,
+                                            Measured TradeOff::*number,
+                                            double timeShare = kSignificantTimeShare);
+
 enum class Reach {
   interpolated,  ///< between two measured points, or at one
   atMost,        ///< the last measured point has this much already: less is not measured
-  notReached,    ///< every measured point is slower than the budget, or has more error
+  notReached,    ///< every measured point takes longer, or has more error
   notMeasured    ///< there is no point
 };
 const char* name(Reach reach);  ///< "not_reached"

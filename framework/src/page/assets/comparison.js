@@ -182,9 +182,9 @@ const comparisonOf = (function () {
   const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1] });
   const named = file => [swatch(file), pipelineName(file)];
 
-  /** From which budget on which pipeline has the least error. */
+  /** From which frame time on which pipeline has the least error. */
   function rangeTable(comparison) {
-    return table(columns("Budget, ms", ["Least error", "number"], "Pipeline", "Parameters", ["Not told apart from it", "wide"]),
+    return table(columns("Frame time, ms", ["Least error", "number"], "Pipeline", "Parameters", ["Not told apart from it", "wide"]),
       comparison.ranges.map(range => {
         const [best, ...others] = range.best.map(at => comparison.points[at]);
         return [sortedBy(range.from_ms, range.to_ms === null ? "from " + milliseconds(range.from_ms) + " on"
@@ -197,8 +197,8 @@ const comparisonOf = (function () {
   /** Pipelines without a point on the Pareto front, and whose points beat theirs. */
   function beatenList(comparison) {
     const beaten = comparison.pipelines.map((pipeline, index) => ({ pipeline, index })).filter(one => !one.pipeline.on_front);
-    if (beaten.length === 0) return h("p", null, "Every pipeline is unbeaten at some budget.");
-    return [h("p", null, "Beaten at every budget:"), list(beaten.map(({ pipeline, index }) => {
+    if (beaten.length === 0) return h("p", null, "Every pipeline is unbeaten at some frame time.");
+    return [h("p", null, "Beaten at every frame time:"), list(beaten.map(({ pipeline, index }) => {
       const by = [...new Set(comparison.points.filter(point => point.pipeline === index && point.beaten_by !== null)
         .map(point => comparison.points[point.beaten_by].pipeline))].sort((a, b) => a - b);
       return shortName(pipeline.file) + ", by " + by.map(at => at === index ? "itself at other parameters"
@@ -236,7 +236,7 @@ const comparisonOf = (function () {
     const equalTime = comparison.pipelines[0].equal_time.length > 0, equalError = comparison.pipelines[0].equal_error.length > 0;
     return [caption("Chosen above: ", h("b", null, titleOf(comparison)), ", ", metrics[comparison.metric], ", the reference's layer ",
                     h("code", null, comparison.reference), "."),
-            h("h4", null, "Least error within a budget"), rangeTable(comparison), beatenList(comparison),
+            h("h4", null, "Least error within a frame time"), rangeTable(comparison), beatenList(comparison),
             equalTime && [h("h4", null, "Equal time: the error that each reaches"),
                           equalTable(comparison, "equal_time", "ms", "error", limit => four(limit) + " ms", "slower")],
             h("h4", null, "Equal error: the time that each needs, ms"),
@@ -375,7 +375,7 @@ const comparisonOf = (function () {
         nothing.length > 0 && caption("Nothing to compare: " + nothing.map(componentTitle).join(", ")
           + " has no error, since neither the reference nor any image has such light."),
         caption("In the tables below the logarithm of the error is linear in that of the time between two measured points of one "
-          + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the budget (the error) "
+          + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the frame time (the error) "
           + "already. ±: one standard uncertainty, from those of both points through the interpolation. Bold: the least, and what cannot "
           + "be told apart from it."),
         following(() => tables(scene, chosen()))],
