@@ -24,6 +24,7 @@ int run(int count, char** arguments) {
   Commands commands{app, global, {}};
   commands.words.assign(arguments + 1, arguments + count);
   addTextCommands(commands);
+  addDescribeCommand(commands);
   addListCommand(commands);
   addRenderCommand(commands);
   addReferenceCommand(commands);
