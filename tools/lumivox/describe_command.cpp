@@ -129,6 +129,13 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
   return text;
 }
 
+/// The known word that is this one with an "s" more or less: "cones" for "cone"; empty where there is none.
+std::string otherNumberOf(const std::string& word, const std::vector<std::string>& known) {
+  for (const std::string& one : known)
+    if (one == word + "s" || word == one + "s") return one;
+  return {};
+}
+
 int describe(const std::string& word, bool asJson, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   std::vector<std::string> known;
@@ -146,6 +153,9 @@ int describe(const std::string& word, bool asJson, const GlobalOptions& global) 
     if (kind->name == word) text += kindText(*kind) + "\n";
   }
   text += describeInTechniques(techniques, word, known);
+  if (text.empty())
+    if (const std::string other = otherNumberOf(word, known); !other.empty())
+      return describe(other, asJson, global);
   if (text.empty()) {
     const std::string nearest = nearestWord(word, known);
     throw Error(fmt::format(
