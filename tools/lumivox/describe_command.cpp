@@ -10,6 +10,7 @@
 #include "highlighting.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/terminal.h"
 #include "lumivox/dsl/schema.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/sweep_text.h"
@@ -90,6 +91,29 @@ std::string kindText(const PortKind& kind) {
   return text;
 }
 
+/// Inputs, outputs or parameters of this name in more passes than this are listed by their passes alone.
+constexpr std::size_t kMostInFull = 3;
+
+/// An input, output or parameter of the described name.
+struct Member {
+  std::string pass, text;
+};
+
+/// Each in full, or, where there are many: "input light of 7 passes: a.b, a.c, ...".
+std::string membersText(const std::string& what, const std::string& word,
+                        const std::vector<Member>& members) {
+  std::string text;
+  if (members.size() <= kMostInFull) {
+    for (const Member& one : members)
+      text += fmt::format("{} {} of {} {}\n\n", what, word, one.pass, one.text);
+    return text;
+  }
+  std::vector<std::string> passes;
+  for (const Member& one : members) passes.push_back(one.pass);
+  return fmt::format("{} {} of {} passes: {}; lumivox describe {} explains one of them\n\n", what, word,
+                     members.size(), fmt::join(passes, ", "), passes.front());
+}
+
 /// Everything among the techniques that has this name; adds all names to `known`.
 std::string describeInTechniques(TechniqueSet& techniques, const std::string& word,
                                  std::vector<std::string>& known) {
@@ -103,6 +127,7 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
     for (const PassEntry& entry : technique->passes) text += " " + entry.name;
     text += "\n\n";
   }
+  std::vector<Member> inputs, outputs, parameters;
   forEachPass(techniques, [&](const Technique& technique, const PassEntry& entry) {
     const std::string full = technique.name + "." + entry.name;
     known.push_back(entry.name);
@@ -112,21 +137,21 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
       return;
     }
     const std::unique_ptr<Pass> pass = entry.make();
-    const auto member = [&](const char* kind, const auto& members, const auto& line) {
+    const auto collect = [&](std::vector<Member>& found, const auto& members, const auto& line) {
       for (const auto* one : members) {
         known.push_back(one->name());
         if (one->name() == word)
-          text += fmt::format("{} {} of {} ({}){}\n\n", kind, word, full, line(*one),
-                              meaningAfter(one->meaning()));
+          found.push_back({full, fmt::format("({}){}", line(*one), meaningAfter(one->meaning()))});
       }
     };
-    member("input", pass->inputs(), inputText);
-    member("output", pass->outputs(), outputText);
-    member("parameter", pass->parameters(), [](const ParamBase& parameter) {
+    collect(inputs, pass->inputs(), inputText);
+    collect(outputs, pass->outputs(), outputText);
+    collect(parameters, pass->parameters(), [](const ParamBase& parameter) {
       return rangeText(parameter) + "; default " + parameter.defaultText();
     });
   });
-  return text;
+  return text + membersText("output", word, outputs) + membersText("input", word, inputs) +
+         membersText("parameter", word, parameters);
 }
 
 /// The known word that is this one with an "s" more or less: "cones" for "cone"; empty where there is none.
@@ -134,6 +159,32 @@ std::string otherNumberOf(const std::string& word, const std::vector<std::string
   for (const std::string& one : known)
     if (one == word + "s" || word == one + "s") return one;
   return {};
+}
+
+/// The lines as wide as the terminal. What does not fit goes on below the line's second column ("  fov  full
+/// angle"), or, in a line without columns, two further in than the line.
+std::string fittedToTerminal(const std::string& text) {
+  const auto columns = static_cast<std::size_t>(outputColumns());
+  std::string result;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    const std::string line = text.substr(from, end - from);
+    from = end + 1;
+    if (shownWidth(line) <= columns) {
+      result += line + "\n";
+      continue;
+    }
+    const std::size_t margin = line.find_first_not_of(' ');
+    const std::size_t gap = line.find("  ", margin);
+    std::size_t second = gap == std::string::npos ? margin : line.find_first_not_of(' ', gap);
+    if (second > columns / 2) second = margin;
+    const std::string lines = wrapped(line.substr(second), columns - second, second == margin ? 2 : 0);
+    const std::string below(second, ' ');
+    result += line.substr(0, second);
+    for (const char c : lines) result += c == '\n' ? "\n" + below : std::string(1, c);
+    result += "\n";
+  }
+  return result;
 }
 
 int describe(const std::string& word, bool asJson, const GlobalOptions& global) {
@@ -166,7 +217,7 @@ int describe(const std::string& word, bool asJson, const GlobalOptions& global) 
   if (asJson) {
     printJson(describedAsJson(techniques, word));
   } else {
-    print(text + "\n");
+    print(fittedToTerminal(text + "\n"));
   }
   return kGood;
 }
