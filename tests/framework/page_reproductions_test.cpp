@@ -209,9 +209,10 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
   };
   CHECK(written("nothing here") == "nothing here");
   const std::string ratios = "x <!-- reproduced ratios table-1; a; b -->1 : 99<!-- end --> y\n";
-  CHECK(written(ratios) ==
-        "x <!-- reproduced ratios table-1; a; b -->1 : 3.3, published 1 : 3: *reproduced*; the whole table "
-        "*not reproduced*<!-- end --> y\n");
+  CHECK(
+      written(ratios) ==
+      "x <!-- reproduced ratios table-1; a; b -->a : b = 1 : 3.3, published 1 : 3: *reproduced*; the whole table "
+      "*not reproduced*<!-- end --> y\n");
   // An example of how a passage is written is none.
   const std::string shown = "```text\n<!-- reproduced table nothing --> ...\n```\n";
   CHECK(written(shown + ratios) == shown + written(ratios));
@@ -220,13 +221,35 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
   // Ratios are to the first row that is named: 100 / 6.6 for 9 / 3.
   CHECK_THAT(
       written("<!-- reproduced ratios table-1; b; c, d; absent --><!-- end -->"),
-      Contains("-->1 : 15.2 : -, published 1 : 3 : 1.33: *not reproduced*, *not comparable* (it is not "
-               "here); the whole table"));
+      Contains(
+          "-->b : c, d : absent = 1 : 15.2 : -, published 1 : 3 : 1.33: *not reproduced*, *not comparable* (it is not "
+          "here); the whole table"));
+  // What all names share, at their beginning or at their end, stands once.
+  ReproducedResult shared = table();
+  shared.rows[0].name = "room, 64, time";
+  shared.rows[1].name = "room, 128, time";
+  shared.rows[2].name = "room, 64, memory";
+  const auto ofShared = [&](const std::string& names) {
+    return withReproducedPassages("<!-- reproduced ratios table-1; " + names + " --><!-- end -->", "card.md",
+                                  {shared});
+  };
+  CHECK_THAT(ofShared("room, 64, time; room, 128, time"), Contains("-->64 : 128 (room, time) = 1 : 3.3, "));
+  CHECK_THAT(ofShared("room, 64, time; room, 64, memory"), Contains("-->time : memory (room, 64) = 1 : "));
+  CHECK_THAT(ofShared("room, 64, time; half"), Contains("-->room, 64, time; half = "));
   // A row with a divisor of its own is no part of a chain.
   CHECK_THAT(written("<!-- reproduced ratios table-1; half --><!-- end -->"),
-             Contains("-->2, published 2: *reproduced*"));
+             Contains("-->half = 2, published 2: *reproduced*"));
   CHECK_THAT(written("<!-- reproduced curve figure-2; volume --><!-- end -->"),
              Contains("-->resolution^1.00") && Contains("(published: linear), reproduced<"));
+  // By the name that people know it by, too.
+  ReproducedResult cited = table();
+  cited.published.id = "004-table-1";
+  cited.published.paper = "Lensing and Broll 2013, Table 1";
+  for (const char* name : {"004-table-1", "lensing2013-table-1"})
+    CHECK_THAT(
+        withReproducedPassages("<!-- reproduced ratios " + std::string(name) + "; a; b --><!-- end -->",
+                               "card.md", {cited}),
+        Contains("-->a : b = 1 : 3.3, "));
   const std::string whole = written("<!-- reproduced table table-1 -->\nold\n<!-- end -->\nafter");
   CHECK_THAT(whole, Contains("| c, d | 9 ms | 100 [100, 100] ms | 9 | 50 | not reproduced |\n"));
   CHECK_THAT(whole, !Contains("| absent |") && !Contains("old") && Contains("Not reproduced: ") &&

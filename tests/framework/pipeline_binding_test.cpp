@@ -115,6 +115,19 @@ TEST_CASE("an unknown technique is named with those that there are") {
              Contains("test.pipeline:2:8: unknown technique 'tpy'; expected toy; did you mean 'toy'?"));
 }
 
+TEST_CASE(
+    "an unknown technique is told with the folders that were searched, and with the option that adds one") {
+  class Foldered : public TestTechniques {
+    std::vector<std::filesystem::path> folders() const override { return {"/mine", "/opt/plugins"}; }
+  } techniques;
+  const Pipeline pipeline = pipelineOf("pass a ambient.gather { }\noutput o a.x");
+  CHECK_THAT(
+      messageOf<DiagnosticsError>([&] { checkPipeline(pipeline, techniques); }),
+      Contains(
+          "unknown technique 'ambient': no libambient.so in /mine, /opt/plugins (--techniques FOLDER adds "
+          "one); expected a technique, but no technique library was found"));
+}
+
 TEST_CASE("a technique that was skipped is named with the reason") {
   TestTechniques techniques;
   techniques.addSkipped("/plugins/libbroken.so", "the file is truncated");

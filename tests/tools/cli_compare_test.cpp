@@ -98,6 +98,14 @@ TEST_CASE("compare refuses images of other sizes and files without a layer in co
                "no layer in common");
 }
 
+TEST_CASE("compare says of a PNG that it holds no linear radiance, and what to give in its place") {
+  const Workplace place;
+  const CommandResult result =
+      runCommand("lumivox compare '" + place.file("a.png") + "' '" + place.file("b.png") + "'");
+  checkRefused(result, "no linear radiance");
+  CHECK(contains(result.errors, "-o NAME.exr"));
+}
+
 TEST_CASE("an EXR that is missing, empty, cut short or something else gives one clear error") {
   const Workplace place;
   writeConstant(place.path() / "a.exr", 1.0f, 0.5f);

@@ -145,6 +145,36 @@ TEST_CASE(
     CHECK(names.count(id) == 1);
 }
 
+TEST_CASE("tables and figures are listed by first author and year, and taken by that name or by their id") {
+  const Json list = Json::parse(runCommand("lumivox reproduce --list --json").output);
+  std::set<std::string> names;
+  for (const Json& one : list) {
+    const std::string id = one["id"], name = one["name"];
+    INFO(id);
+    CHECK(names.insert(name).second);
+    CHECK(name.substr(name.find('-')) == id.substr(id.find('-')));
+  }
+  for (const char* name : {"mavridis2011-table-1", "thiedemann2011-near-field", "dong2007-table-1",
+                           "lensing2013-figure-5", "gomes2015-figure-18"}) {
+    INFO(name);
+    CHECK(names.count(name) == 1);
+  }
+  const std::string wide =
+      "COLUMNS=160 " + (binaryDirectory() / "bin/lumivox").string() + " reproduce --list";
+  const CommandResult byName = runCommand(wide + " mavridis2011-table-1"),
+                      byId = runCommand(wide + " 000-table-1");
+  CHECK(byName.exitCode == 0);
+  CHECK(byName.output == byId.output);
+  CHECK(contains(byName.output, "mavridis2011-table-1"));
+  CHECK(contains(byName.output, "(5 of 20 measured)"));
+  checkRefused(runCommand("lumivox reproduce mavridis2011-table-11 --list"),
+               "did you mean 'mavridis2011-table-1'");
+  // Names and titles fit a narrow terminal in two lines each.
+  const std::string narrow =
+      runCommand("COLUMNS=80 " + (binaryDirectory() / "bin/lumivox").string() + " reproduce --list").output;
+  CHECK(static_cast<std::size_t>(std::count(narrow.begin(), narrow.end(), '\n')) < 1 + 3 * list.size());
+}
+
 TEST_CASE("every committed figure makes a claim that its images test, and the figures' page quotes it") {
   const std::string page = readFile(sourceDirectory() / "docs/benchmarks/figures.md");
   std::size_t claims = 0;
@@ -451,7 +481,7 @@ TEST_CASE(
   INFO(first.errors);
   REQUIRE(first.exitCode == 0);
   const std::string card = readFile(directory.path() / "techniques/one/README.md");
-  CHECK(contains(card, "a <!-- reproduced ratios room; voxels; voxels, 64 -->1 : "));
+  CHECK(contains(card, "a <!-- reproduced ratios room; voxels; voxels, 64 -->voxels : voxels, 64 = 1 : "));
   CHECK(contains(card, ", published 1 : 4.5: *reproduced*"));
   CHECK(contains(readFile(directory.path() / "docs/benchmarks/reproductions.md"), "## room: "));
   CHECK(inProject("--cards --check").exitCode == 0);

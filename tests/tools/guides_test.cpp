@@ -263,7 +263,7 @@ TEST_CASE("the files that are read elsewhere are where the guide says") {
 TEST_CASE("published tables are reproduced as their guide says") {
   const FollowedGuide guide("docs/reproducing.md");
   checkFollowed(guide);
-  CHECK(contains(guide.of("--list").output, "004-table-3"));
+  CHECK(contains(guide.of("--list").output, "gomes2015-table-3"));
   REQUIRE(guide.says("Sheets and curves go to the folder of `--figures`, `out/reproductions` by default"));
   CHECK(guide.has("out/reproductions/004-figure-20.png"));
   REQUIRE(guide.says("writes nothing and reports where a text differs"));

@@ -45,6 +45,11 @@ TEST_CASE("a new technique has one of each part, under its name, in a project of
   CHECK(runCommand("lumivox fmt --check '" + (work.path() / "lab/scenes/pipelines/glow.pipeline").string() +
                    "'")
             .exitCode == 0);
+  // A program in a build folder is installed first: find_package would reject the folder itself.
+  const std::string build = binaryDirectory().string(), prefix = build + "/installed";
+  CHECK(contains(made.output,
+                 "ninja -C " + build + " sdk && cmake --install " + build + " --prefix " + prefix));
+  CHECK(contains(made.output, "-DCMAKE_PREFIX_PATH=" + prefix + " "));
   // A second one goes beside it and leaves the project as it is.
   const std::string project = readFile(work.path() / "lab/CMakeLists.txt");
   CHECK(runCommand("cd '" + work.path().string() + "/lab/techniques' && '" +

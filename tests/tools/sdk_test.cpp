@@ -67,7 +67,9 @@ TEST_CASE(
     CHECK(contains(readFile(share / file), part));
   }
 
-  installed.mustRun(installed.work(), "lumivox new technique glow --in lab");
+  const std::string next = installed.mustRun(installed.work(), "lumivox new technique glow --in lab");
+  CHECK(contains(next, "-DCMAKE_PREFIX_PATH=" + installed.prefix().string() + " "));
+  CHECK_FALSE(contains(next, "ninja -C"));
   const fs::path lab = installed.work() / "lab";
   installed.mustRun(lab, "cmake -S . -B build -G Ninja -DCMAKE_PREFIX_PATH=" + installed.prefix().string() +
                              " && cmake --build build");

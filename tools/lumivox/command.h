@@ -19,7 +19,8 @@ struct Commands {
   std::vector<std::string> words{};  ///< as given, without the program's name
 };
 
-void addTextCommands(Commands& commands);      // check, fmt, describe
+void addTextCommands(Commands& commands);      // check, fmt
+void addDescribeCommand(Commands& commands);   // describe
 void addListCommand(Commands& commands);       // list
 void addRenderCommand(Commands& commands);     // render
 void addReferenceCommand(Commands& commands);  // reference

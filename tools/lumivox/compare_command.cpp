@@ -158,7 +158,16 @@ void addPanels(Sheet& sheet, const LayerPair& pair, const ImageBuffer& image, co
   sheet.panels.push_back({"FLIP (HDR), 0 to 1", falseColour(flipMap), {}});
 }
 
+void refusePng(const std::filesystem::path& file) {
+  if (file.extension() == ".png")
+    throw Error(fmt::format(
+        "{}: a PNG holds colours for a display, no linear radiance; expected an EXR file, as `lumivox render` and "
+        "`lumivox reference` write with -o NAME.exr",
+        file.string()));
+}
+
 int compareFiles(const CompareCommand& command) {
+  for (const auto& file : {command.image, command.reference}) refusePng(file);
   Outputs().add("--sheet", command.sheet, {".png"}).check({command.image, command.reference});
   const LayeredImage image = readExr(command.image), reference = readExr(command.reference);
   const std::vector<LayerPair> pairs = pairsOf(command, image, reference);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "common/reasons.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -242,12 +243,14 @@ void addExplainCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "explain", "lists what a run leaves out, why, and what that saves, measured");
   auto options = std::make_shared<ExplainCommand>();
-  command->add_option(
-      "TEXT", options->texts,
-      "a scene and a pipeline: in full; several scenes or pipelines: as a matrix (no pipeline: "
-      "every committed one)");
-  addRepeatable(*command, "--pipeline", options->pipelines,
-                "a further pipeline's text, for a matrix; may be repeated");
+  takesNames(command->add_option(
+                 "TEXT", options->texts,
+                 "a scene and a pipeline: in full; several scenes or pipelines: as a matrix (no pipeline: "
+                 "every committed one)"),
+             NamedText::sceneOrPipeline);
+  takesNames(addRepeatable(*command, "--pipeline", options->pipelines,
+                           "a further pipeline's text or name, for a matrix; may be repeated"),
+             NamedText::pipeline);
   command->add_flag("--all", options->all, "every committed scene, as a matrix");
   command->add_flag("--no-times", options->noTimes,
                     "only what is left out and whether the image is the same; much faster");

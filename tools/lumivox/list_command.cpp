@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/base/installation.h"
 #include "lumivox/dsl/document.h"
-#include "lumivox/experiment/report.h"
 #include "lumivox/pipeline/pass.h"
 
 namespace lumivox::command {
@@ -25,24 +24,10 @@ std::string titleOf(const fs::path& file) {
 }
 
 /// Those of the project here, and those that come with the program.
-Json texts(const std::string& extension, const fs::path& subfolder) {
-  std::vector<fs::path> folders;
+Json texts(NamedText kind) {
   std::error_code failure;
-  for (const auto& scenes : {committedScenes(), programData("scenes")})
-    if (scenes && std::none_of(folders.begin(), folders.end(), [&](const fs::path& known) {
-          return fs::equivalent(known, *scenes, failure);
-        }))
-      folders.push_back(*scenes);
-  if (folders.empty())
-    throw AbsentError(
-        "no project here: no folder scenes/pipelines in this folder or above, nor beside the program");
-  std::vector<fs::path> files;
-  for (const fs::path& folder : folders)
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder / subfolder, failure))
-      if (entry.path().extension() == extension && entry.is_regular_file()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   Json list = Json::array();
-  for (const fs::path& file : files) {
+  for (const fs::path& file : listedTexts(kind)) {
     const fs::path shown = fs::proximate(file, failure);
     list.push_back({{"name", file.stem().string()},
                     {"title", titleOf(file)},
@@ -119,9 +104,9 @@ void addListCommand(Commands& commands) {
     Json list;
     std::vector<std::string> columns{"name", "title", "file"};
     if (*what == "scenes") {
-      list = texts(".scene", "");
+      list = texts(NamedText::scene);
     } else if (*what == "pipelines") {
-      list = texts(".pipeline", "pipelines");
+      list = texts(NamedText::pipeline);
     } else {
       TechniqueSet techniques = global.techniqueSet();
       list = *what == "techniques" ? techniquesList(techniques) : passesList(techniques);

@@ -8,6 +8,14 @@ namespace {
 using namespace lumivox;
 using namespace lumivox::command;
 
+/// For whoever types the program's name alone.
+constexpr const char* kFirstSteps =
+    "lumivox: expected a command. To begin with:\n"
+    "  lumivox list scenes\n"
+    "  lumivox render cornell voxel_cone_tracing -o out.png\n"
+    "  lumivox report cornell --budget 60s\n"
+    "`lumivox help` lists all commands, `lumivox help COMMAND` what one takes.\n";
+
 int run(int count, char** arguments) {
   requireLibraryOf(techniqueVersionHere());
   CLI::App app{
@@ -18,12 +26,17 @@ int run(int count, char** arguments) {
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default(false);
 
+  if (count == 1) {
+    std::cerr << kFirstSteps;
+    return kBadInput;
+  }
   GlobalOptions global;
   global.commandLine = asTyped("lumivox", count, arguments);
   global.addTo(app);
   Commands commands{app, global, {}};
   commands.words.assign(arguments + 1, arguments + count);
   addTextCommands(commands);
+  addDescribeCommand(commands);
   addListCommand(commands);
   addRenderCommand(commands);
   addReferenceCommand(commands);

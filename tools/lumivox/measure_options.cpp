@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "common/named_texts.h"
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -17,9 +18,12 @@
 namespace lumivox::command {
 
 void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::string& scenes) {
-  app.add_option("SCENE", options.scenes, scenes)->required();
-  addRepeatable(app, "--pipeline", options.pipelines,
-                "a pipeline's text; may be repeated (default: every committed one that suits the scene)");
+  takesNames(app.add_option("SCENE", options.scenes, scenes)->required(), NamedText::sceneOrPipeline);
+  takesNames(
+      addRepeatable(
+          app, "--pipeline", options.pipelines,
+          "a pipeline's text or name; may be repeated (default: every committed one that suits the scene)"),
+      NamedText::pipeline);
   run.addTo(app);
   display.addExposureTo(app);
   app.add_option("--spp", options.referenceSamples,

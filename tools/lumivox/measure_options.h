@@ -15,7 +15,8 @@ struct MeasureOptions {
 
   /// A command that makes images adds --tone. `store`: the meaning of --store here; `scenes`: that of the
   /// positional texts.
-  void addTo(CLI::App& app, const std::string& store, const std::string& scenes = "the scenes' texts");
+  void addTo(CLI::App& app, const std::string& store,
+             const std::string& scenes = "the scenes' texts or names");
   /// Everything that was asked for, in the words of the framework. Pipelines' texts among the scenes are
   /// pipelines.
   ReportOptions asked(const GlobalOptions& global, const std::string& doing = "measuring",

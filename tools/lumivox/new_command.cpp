@@ -20,6 +20,17 @@ fs::path projectHere(const std::string& name) {
   return here / name;
 }
 
+/// The folder that this program was built in; none where it is installed. find_package finds no Lumivox
+/// there.
+std::optional<fs::path> buildFolder() {
+  const auto program = programFile();
+  if (!program) return std::nullopt;
+  const fs::path folder = program->parent_path().parent_path();
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / "CMakeCache.txt", ignored)) return std::nullopt;
+  return folder;
+}
+
 /// A Lumivox that is installed where neither the shell nor find_package looks: its prefix.
 std::optional<fs::path> unusualPrefix() {
   const auto program = programFile();
@@ -52,7 +63,13 @@ int newTechniqueCommand(const std::string& name, const fs::path& in, const Globa
         folder, name, name, name, name));
     return kGood;
   }
-  const auto prefix = unusualPrefix();
+  const auto built = buildFolder();
+  const auto prefix = built ? std::optional(*built / "installed") : unusualPrefix();
+  if (built)
+    print(fmt::format(
+        "\nFirst install this Lumivox, since a project outside of its tree needs the headers and the package:\n"
+        "  ninja -C {} sdk && cmake --install {} --prefix {}\n",
+        built->string(), built->string(), prefix->string()));
   print(fmt::format(
       "\nNext, in {}:\n  cmake -S . -B build -G Ninja{} && cmake --build build\n"
       "  ctest --test-dir build --output-on-failure\n"

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -77,7 +78,8 @@ void addReferenceCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand("reference", "path-traces the reference of a scene");
   auto all = std::make_shared<ReferenceCommand>();
   ReferenceOptions& options = all->options;
-  command->add_option("SCENE", all->scene, "the scene's text")->required();
+  takesNames(command->add_option("SCENE", all->scene, "the scene's text or name")->required(),
+             NamedText::scene);
   command->add_option("-o,--out", all->output, ".exr (every layer and its variance) or .png (full transport)")
       ->required();
   command->add_option("--spp", options.samplesPerPixel, "samples per pixel (default 256)")

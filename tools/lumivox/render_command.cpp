@@ -7,6 +7,7 @@
 #include <set>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
@@ -379,8 +380,10 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
 void addRenderCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand("render", "renders a scene with a pipeline into images");
   auto options = std::make_shared<RenderCommand>();
-  command->add_option("SCENE", options->scene, "the scene's text")->required();
-  command->add_option("PIPELINE", options->pipeline, "the pipeline's text")->required();
+  takesNames(command->add_option("SCENE", options->scene, "the scene's text or name")->required(),
+             NamedText::scene);
+  takesNames(command->add_option("PIPELINE", options->pipeline, "the pipeline's text or name")->required(),
+             NamedText::pipeline);
   command->add_option("-o,--out", options->output,
                       "the image: .exr (every output as a layer, the whole image as the main layer) or .png "
                       "(the whole image)");

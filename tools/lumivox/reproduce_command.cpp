@@ -54,16 +54,20 @@ std::vector<PublishedResult> chosenTables(const std::vector<std::string>& names)
       continue;
     }
     if (!committed) committed = committedTables();
-    std::vector<std::string> known;
-    for (const PublishedResult& table : *committed) known.push_back(table.id);
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) {
+    const auto found = std::find_if(committed->begin(), committed->end(), [&](const PublishedResult& table) {
+      return name == table.id || name == citedName(table);
+    });
+    if (found == committed->end()) {
+      std::vector<std::string> cited;
+      for (const PublishedResult& table : *committed) cited.push_back(citedName(table));
+      std::vector<std::string> known = cited;
+      for (const PublishedResult& table : *committed) known.push_back(table.id);
       const std::string nearest = nearestWord(name, known);
       throw Error(fmt::format(
           "no published table or figure is called '{}'; expected one of {}, or a file .reproduction{}", name,
-          fmt::join(known, ", "), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+          fmt::join(cited, ", "), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
-    chosen.push_back((*committed)[static_cast<std::size_t>(found - known.begin())]);
+    chosen.push_back(*found);
   }
   return chosen;
 }
@@ -71,13 +75,13 @@ std::vector<PublishedResult> chosenTables(const std::vector<std::string>& names)
 int list(const ReproduceCommand& command) {
   const std::vector<PublishedResult> results = chosenTables(command.names);
   Json json = Json::array();
-  std::vector<std::vector<std::string>> rows{
-      {"Name", "Rows", "Curves", "Panels", "Measured", "Title", "Paper"}};
+  std::vector<std::vector<std::string>> rows{{"Name", "Title"}};
   for (const PublishedResult& result : results) {
     const std::vector<const PublishedSetUp*> setUps = result.setUps();
     const auto measured = std::count_if(setUps.begin(), setUps.end(),
                                         [](const PublishedSetUp* one) { return one->absent.empty(); });
     json.push_back({{"id", result.id},
+                    {"name", citedName(result)},
                     {"title", result.title},
                     {"paper", result.paper},
                     {"file", result.file.string()},
@@ -85,9 +89,11 @@ int list(const ReproduceCommand& command) {
                     {"curves", result.curves.size()},
                     {"panels", result.panels.size()},
                     {"measured", measured}});
-    rows.push_back({result.id, std::to_string(result.rows.size()), std::to_string(result.curves.size()),
-                    std::to_string(result.panels.size()), std::to_string(measured), result.title,
-                    result.paper});
+    // Counts are told where something cannot be measured; all of them are in the JSON.
+    const bool isWhole = static_cast<std::size_t>(measured) == setUps.size();
+    rows.push_back({citedName(result),
+                    isWhole ? result.title
+                            : fmt::format("{} ({} of {} measured)", result.title, measured, setUps.size())});
   }
   if (command.json)
     printJson(json);
@@ -97,8 +103,8 @@ int list(const ReproduceCommand& command) {
 }
 
 std::string resultText(const ReproducedResult& result, const std::vector<fs::path>& files) {
-  std::string text =
-      fmt::format("{}: {} ({})\n", result.published.id, result.published.title, result.published.paper);
+  std::string text = fmt::format("{}: {} ({})\n", citedName(result.published), result.published.title,
+                                 result.published.paper);
   if (!result.rows.empty()) {
     std::vector<std::vector<std::string>> rows{reproductionHeadings()};
     for (std::string& heading : rows.front())
@@ -221,7 +227,7 @@ void write(const fs::path& output, const std::vector<ReproducedResult>& results)
 std::string keptText(const ReproduceCommand& command, const std::vector<PublishedResult>& chosen,
                      std::size_t done, const GlobalOptions& global) {
   std::vector<std::string> rest;
-  for (std::size_t i = done; i < chosen.size(); ++i) rest.push_back(chosen[i].id);
+  for (std::size_t i = done; i < chosen.size(); ++i) rest.push_back(citedName(chosen[i]));
   const std::string kept =
       !command.record.empty() ? fmt::format("{} keeps {} of {}", command.record.string(), done, chosen.size())
       : !command.store.empty()
@@ -264,10 +270,10 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
   bool failed = false;
   InterruptionNote note;
   for (const PublishedResult& result : chosen) {
-    logInformation("{}: {}", result.id, result.title);
+    const std::string name = citedName(result);
+    logInformation("{}: {}", name, result.title);
     options.progress = progressLine(
-        chosen.size() == 1 ? result.id
-                           : fmt::format("{} ({} of {})", result.id, results.size() + 1, chosen.size()),
+        chosen.size() == 1 ? name : fmt::format("{} ({} of {})", name, results.size() + 1, chosen.size()),
         "steps");
     note.say(keptText(command, chosen, results.size(), global));
     results.push_back(lumivox::reproduce(
@@ -301,8 +307,9 @@ void addReproduceCommand(Commands& commands) {
       "reproduce",
       "measures the set-ups of published tables and figures, compares numbers as ratios, and makes the images");
   auto all = std::make_shared<ReproduceCommand>();
-  command->add_option("NAME", all->names,
-                      "names of tables and figures, or texts .reproduction (default: all committed ones)");
+  command->add_option(
+      "NAME", all->names,
+      "names of tables and figures as --list prints them, or texts .reproduction (default: all committed ones)");
   command->add_flag("--list", all->list, "only list them");
   command
       ->add_option(

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/shader/library.h"
@@ -152,8 +153,9 @@ void addShadersCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "shaders", "lists the shader variants that are possible, compiled and needed, and prints them");
   auto options = std::make_shared<ShadersCommand>();
-  command->add_option("SCENE", options->scene, "the scene's text");
-  command->add_option("PIPELINE", options->pipeline, "the pipeline's text");
+  takesNames(command->add_option("SCENE", options->scene, "the scene's text or name"), NamedText::scene);
+  takesNames(command->add_option("PIPELINE", options->pipeline, "the pipeline's text or name"),
+             NamedText::pipeline);
   options->run.addTo(*command);
   command->add_option("--print", options->program,
                       "TECHNIQUE/PROGRAM: print a variant of it as GLSL; needs no scene");

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -156,8 +157,10 @@ void addStressCommand(Commands& commands) {
   addRepeatable(*command, "--family", options.families, "only cases of this family; may be repeated");
   addRepeatable(*command, "--case", options.cases,
                 "only this case, quick or not; may contain '*'; may be repeated");
-  addRepeatable(*command, "--pipeline", options.pipelines,
-                "pipelines' texts (default: every committed one, voxelizers too); may be repeated");
+  takesNames(addRepeatable(*command, "--pipeline", options.pipelines,
+                           "pipelines' texts or names (default: every committed one, voxelizers too); may be "
+                           "repeated"),
+             NamedText::pipeline);
   command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
   addDuration(*command, "--time-limit", options.timeLimit,
               "for one cell, such as 90s (default 60s with --quick, else 600s)");

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "command.h"
+#include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/analysis/scaling.h"
 #include "lumivox/base/error.h"
@@ -133,11 +134,14 @@ void addVoxelsCommand(Commands& commands) {
       "voxels", "measures voxelizers on scenes: time, memory, precision, recall and holes");
   auto all = std::make_shared<VoxelsCommand>();
   VoxelizerOptions& options = all->options;
-  command->add_option("SCENE", all->scenes, "the scenes' texts")->required();
+  takesNames(command->add_option("SCENE", all->scenes, "the scenes' texts or names")->required(),
+             NamedText::scene);
   addRepeatable(*command, "--resolution", all->resolutions,
                 "voxels along the longest side, 1..1024; several as 32,64,128 (default 64)");
-  addRepeatable(*command, "--pipeline,--pipelines", options.pipelines,
-                "a pipeline's text or a folder of them; may be repeated (default: the committed voxelizers)");
+  takesNames(addRepeatable(*command, "--pipeline,--pipelines", options.pipelines,
+                           "a pipeline's text or name, or a folder of texts; may be repeated (default: the "
+                           "committed voxelizers)"),
+             NamedText::pipeline);
   addRepeatable(*command, "--set", options.settings,
                 "a parameter, as name=value, of those pipelines that have it");
   command

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -24,10 +25,12 @@ namespace fs = std::filesystem;
 constexpr double kLargestTolerance = 1e37;
 
 void Options::addTo(CLI::App& app) {
-  app.add_option(
-         "INPUTS", inputs,
-         "SCENE PIPELINE; with --list also a pipeline or a .vdb file alone; with --diff two .vdb files")
-      ->required();
+  command::takesNames(
+      app.add_option(
+             "INPUTS", inputs,
+             "SCENE PIPELINE; with --list also a pipeline or a .vdb file alone; with --diff two .vdb files")
+          ->required(),
+      command::NamedText::sceneOrPipeline);
   app.add_option("-o,--out", output, "the .vdb file");
   run.addTo(app);
   app.add_option("--frames", frames,

@@ -1,13 +1,18 @@
 #include "viewer/options.h"
 
+#include "common/named_texts.h"
 #include "lumivox/plugin/loader.h"
 
 namespace lumivox::viewer {
 
 void ViewOptions::addTo(CLI::App& app) {
-  app.add_option("SCENE", scene, "the scene's text")->required();
-  app.add_option("PIPELINE", pipelines,
-                 "the pipelines' texts, the first shown (default: every committed one that suits the scene)");
+  command::takesNames(app.add_option("SCENE", scene, "the scene's text or name")->required(),
+                      command::NamedText::scene);
+  command::takesNames(
+      app.add_option("PIPELINE", pipelines,
+                     "the pipelines' texts or names, the first shown (default: every committed "
+                     "one that suits the scene)"),
+      command::NamedText::pipeline);
   run.addTo(app);
   app.add_option("--window", windowSize, "WxH: size of the window (default: that of last time, or 1280x800)");
   app.add_option("--fps-limit", fpsLimit,

@@ -34,7 +34,43 @@ std::string table(const ReproducedResult& result) {
   return fmt::format("\n\n{}\n{}\n\n", reproductionTable(rows, judged), verdictText(result));
 }
 
-/// "1 : 0.53 : 0.4, published 1 : 0.86 : 0.35: *not reproduced*".
+std::vector<std::string> commaParts(const std::string& name) {
+  std::vector<std::string> parts;
+  std::size_t from = 0;
+  for (std::size_t comma; (comma = name.find(", ", from)) != std::string::npos; from = comma + 2)
+    parts.push_back(name.substr(from, comma - from));
+  parts.push_back(name.substr(from));
+  return parts;
+}
+
+/// "3 points : 7 points (sponza)" for "sponza, 3 points" and "sponza, 7 points": parts that all names share
+/// at their beginning and at their end are written once. Every name keeps a part of its own.
+std::string namesText(const std::vector<std::string>& names, const char* between) {
+  std::vector<std::vector<std::string>> all;
+  std::size_t fewest = std::string::npos;
+  for (const std::string& name : names) {
+    all.push_back(commaParts(name));
+    fewest = std::min(fewest, all.back().size());
+  }
+  if (names.size() < 2) return fmt::format("{}", fmt::join(names, between));
+  std::vector<std::string> shared, own;
+  const auto shareAll = [&](const auto& part) {
+    return std::all_of(all.begin(), all.end(),
+                       [&](const auto& parts) { return part(parts) == part(all[0]); });
+  };
+  std::size_t first = 0, last = 0;
+  while (first + 1 < fewest && shareAll([&](const auto& parts) { return parts[first]; })) ++first;
+  while (first + last + 1 < fewest && shareAll([&](const auto& parts) { return *(parts.end() - 1 - last); }))
+    ++last;
+  for (const auto& parts : all)
+    own.push_back(fmt::format("{}", fmt::join(parts.begin() + first, parts.end() - last, ", ")));
+  shared.assign(all[0].begin(), all[0].begin() + first);
+  shared.insert(shared.end(), all[0].end() - last, all[0].end());
+  const std::string text = fmt::format("{}", fmt::join(own, between));
+  return shared.empty() ? text : fmt::format("{} ({})", text, fmt::join(shared, ", "));
+}
+
+/// "voxelization : mipmap (isotropic) = 1 : 0.4, published 1 : 0.35: *not reproduced*".
 std::string ratios(const ReproducedResult& result, const std::vector<std::string>& names) {
   std::vector<MeasuredRow> rows;
   for (const std::string& name : names)
@@ -65,8 +101,9 @@ std::string ratios(const ReproducedResult& result, const std::vector<std::string
     if (std::find(verdicts.begin(), verdicts.end(), verdict) == verdicts.end()) verdicts.push_back(verdict);
   }
   const char* const between = isQuotient ? ", " : " : ";
-  std::string text = fmt::format("{}, published {}: {}", fmt::join(measured, between),
-                                 fmt::join(published, between), fmt::join(verdicts, ", "));
+  std::string text =
+      fmt::format("{} = {}, published {}: {}", namesText(names, isQuotient ? "; " : between),
+                  fmt::join(measured, between), fmt::join(published, between), fmt::join(verdicts, ", "));
   if (!asTheWhole) text += fmt::format("; the whole table *{}*", name(result.judged.verdict));
   return page::replaced(text, "|", "\\|");
 }
@@ -87,7 +124,9 @@ std::string claim(const ReproducedResult& result, const std::string& wanted) {
 
 std::string passage(const Request& request, const std::vector<ReproducedResult>& results) {
   const ReproducedResult& result =
-      found(results, "result", request.id, [](const ReproducedResult& one) { return one.published.id; });
+      found(results, "result", request.id, [&](const ReproducedResult& one) {
+        return one.published.id == request.id ? one.published.id : citedName(one.published);
+      });
   if (request.kind == "table") {
     requireNames(request, 0, 0, "table ID");
     return table(result);

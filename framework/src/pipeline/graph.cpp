@@ -541,7 +541,13 @@ MissingTechnique explainMissing(const TechniqueSource& techniques, const std::st
     }
   }
   const std::vector<std::string> available = techniques.available();
-  return {fmt::format("unknown technique '{}'", name),
+  std::vector<std::string> folders;
+  for (const std::filesystem::path& folder : techniques.folders()) folders.push_back(folder.string());
+  // Most often a technique of one's own, built into a folder that no option names.
+  return {folders.empty()
+              ? fmt::format("unknown technique '{}'", name)
+              : fmt::format("unknown technique '{}': no lib{}.so in {} (--techniques FOLDER adds one)", name,
+                            name, fmt::join(folders, ", ")),
           oneOf(available, "a technique, but no technique library was found"), nearestWord(name, available)};
 }
 

@@ -172,6 +172,10 @@ const std::vector<SkippedTechnique>& TechniqueSet::skipped() const {
   return state_->skipped;
 }
 
+std::vector<fs::path> TechniqueSet::folders() const {
+  return state_->directories;
+}
+
 std::vector<std::string> TechniqueSet::opened() const {
   std::vector<std::string> names;
   for (const auto& [name, technique] : state_->opened) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <regex>
 #include <tuple>
 #include <utility>
 
@@ -560,6 +561,20 @@ std::vector<const PublishedSetUp*> PublishedResult::setUps() const {
     for (const PublishedSetUp& point : curve.points) all.push_back(&point);
   for (const PublishedPanel& panel : panels) all.push_back(&panel);
   return all;
+}
+
+std::string citedName(const PublishedResult& result) {
+  const std::size_t dash = result.id.find_first_not_of("0123456789");
+  if (dash == 0 || dash == std::string::npos || result.id[dash] != '-') return result.id;
+  // "Gomes 2015 (thesis)", "Lensing and Broll 2013", "Slides on Thiedemann et al. 2011", "Dong, Kautz and
+  // Seidel 2007".
+  static const std::regex pattern(R"((?:^|\s)([^\s,]+)(?:,[^0-9]*| and [^0-9]*| et al\.|) (\d{4})\b)");
+  std::smatch found;
+  if (!std::regex_search(result.paper, found, pattern)) return result.id;
+  std::string author = found[1];
+  for (char& c : author)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return author + found[2].str() + result.id.substr(dash);
 }
 
 void checkReproduction(const PublishedResult& result, TechniqueSource& techniques) {

@@ -43,6 +43,8 @@ class TechniqueSource {
   /// Names of all techniques, opened or not.
   virtual std::vector<std::string> available() const = 0;
   virtual const std::vector<SkippedTechnique>& skipped() const = 0;
+  /// Folders that it searches, in order; none where techniques come from no folder.
+  virtual std::vector<std::filesystem::path> folders() const { return {}; }
 };
 
 }  // namespace lumivox

@@ -31,6 +31,7 @@ class TechniqueSet : public TechniqueSource {
   /// Names of all libraries in the directories, opened or not.
   std::vector<std::string> available() const override;
   const std::vector<SkippedTechnique>& skipped() const override;
+  std::vector<std::filesystem::path> folders() const override;
   /// Names of those that were opened.
   std::vector<std::string> opened() const;
 

@@ -17,8 +17,13 @@ ImageBuffer indirectDiffuse(const Scene& scene, const std::vector<std::string>& 
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/technique_name.pipeline");
   RenderOptions options;
   options.parameters = pipeline.settings(settings);
+  options.checkReads = true;  // as `lumivox render --check-reads`
   PipelineExecutor executor(device, techniques, scene, pipeline, options);
-  return executor.render(0.0).outputs.at("indirect_diffuse");
+  const FrameResult frame = executor.render(0.0);
+  // Names passes that read more than they declare: such a pass would not run again where it must.
+  CHECK(frame.readsFindings == std::vector<std::string>());
+  CHECK(executor.render(1.0).readsFindings == std::vector<std::string>());
+  return frame.outputs.at("indirect_diffuse");
 }
 
 }  // namespace
