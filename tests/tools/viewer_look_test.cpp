@@ -5,6 +5,7 @@
 #include "lumivox/results/store.h"
 #include "tools/started.h"
 #include "tools/viewer_support.h"
+#include "viewer/arrangement.h"
 #include "viewer/picture.h"
 #include "viewer/program.h"
 
@@ -116,4 +117,76 @@ TEST_CASE("a program that is stopped ends, and voxels lie over what is behind th
   CHECK(over.bytes[0] == 128);
   CHECK(over.bytes[3] == 0);
   CHECK(half.bytes[0] == 64);
+}
+
+TEST_CASE("the window judges by FLIP first, and says in words which number there is none of") {
+  if (!canShowWindows()) return;
+  const Workplace place;
+  const CommandResult done = shown(
+      place,
+      "wait frame\n wait reference 8\n wait judged\n wait frame\n record " + quotedFile(place, "lit.json") +
+          "\n off \"light bulb\"\n wait frame\n wait reference 8\n wait judged\n record " +
+          quotedFile(place, "dark.json") + "\n quit on",
+      committedPipeline("reflective_shadow_maps"));
+  INFO(done.errors);
+  REQUIRE(done.exitCode == 0);
+  const Json lit = Json::parse(place.read("lit.json")), dark = Json::parse(place.read("dark.json"));
+  std::vector<std::string> order;
+  Json chart;
+  for (const Json& row : lit.at("panels").at("judge")) {
+    const std::string name = row.at("name");
+    if (name == "whole image flip" || name == "whole image rmse") order.push_back(name);
+    if (name == "tried") chart = row;
+  }
+  CHECK(order == std::vector<std::string>{"whole image flip", "whole image rmse"});
+  REQUIRE(chart.at("marks").size() == 1);
+  CHECK(contains(chart.at("label"), "FLIP"));
+  CHECK(chart.at("marks")[0].at("y").get<double>() ==
+        Approx(std::stod(rowOf(lit, "judge", "whole image flip"))).epsilon(1e-3));
+  CHECK(std::stod(rowOf(lit, "judge", "whole image of nothing")) < 1.0);
+  CHECK(rowOf(dark, "judge", "whole image mean ratio") == "none: the reference is black");
+  CHECK(!contains(dark.dump(), "nan"));
+}
+
+TEST_CASE("an error map has a legend in its own colours, also beside pictures in false colour") {
+  const ImageBuffer made(2, 1, 3, 0.5f), reference(2, 1, 3, 1.0f);
+  const Picture relative = errorPicture(made, reference, ErrorMap::relative);
+  REQUIRE(relative.legends.size() == 1);
+  const std::vector<unsigned char>& ramp = relative.legends[0].ramp;
+  REQUIRE(ramp.size() > 6);
+  CHECK(std::vector(ramp.begin(), ramp.begin() + 3) == std::vector<unsigned char>{0, 0, 255});
+  CHECK(std::vector(ramp.end() - 3, ramp.end()) == std::vector<unsigned char>{255, 0, 0});
+  for (const ErrorMap map : {ErrorMap::flip, ErrorMap::squared}) {
+    const Picture error = errorPicture(made, reference, map);
+    REQUIRE(error.legends.size() == 1);
+    CHECK(!error.legends[0].ramp.empty());
+    CHECK(error.legends[0].ramp != ramp);
+  }
+  const Picture colours = pictureOf(made, {0.0, Curve::falseColour});
+  const Picture all = besides(besides(colours, colours), relative);
+  REQUIRE(all.legends.size() == 2);
+  CHECK(all.legends[0].text == colours.legends[0].text);
+  CHECK(all.legends[1].text == relative.legends[0].text);
+}
+
+TEST_CASE("an axis has round numbers, two at least and never many") {
+  CHECK(roundNumbers(0.5, 2000.0) == std::vector{1.0, 10.0, 100.0, 1000.0});
+  CHECK(roundNumbers(0.9, 40.0) == std::vector{1.0, 3.0, 10.0, 30.0});
+  CHECK(roundNumbers(0.19, 1.1) == std::vector{0.2, 0.5, 1.0});
+  for (double low = 0.011; low < 20.0; low *= 1.03)
+    for (const double factor : {2.25, 5.0, 20.0, 90.0}) {
+      INFO(low << " " << factor);
+      const std::size_t count = roundNumbers(low, factor * low).size();
+      CHECK(count >= 2);
+      CHECK(count <= 8);
+    }
+}
+
+TEST_CASE("pictures side by side take the whole width where that makes them larger, with the panels below") {
+  const std::optional<float> three = heightAbovePanels({960, 600, 420, 50}, 3.0f);
+  REQUIRE(three);
+  CHECK(*three == Approx(0.6f * 600.0f));  // at most
+  CHECK(heightAbovePanels({960, 1000, 420, 50}, 3.0f) == 370.0f);
+  CHECK(!heightAbovePanels({960, 600, 420, 50}, 1.0f));
+  CHECK(!heightAbovePanels({1920, 600, 420, 50}, 3.0f));
 }

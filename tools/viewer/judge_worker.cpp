@@ -57,7 +57,7 @@ std::optional<std::vector<JudgedOutput>> judged(const RenderedSide& side, const 
     const ImageBuffer nothing =
         neutralImage(image.width(), image.height(),
                      component == side.frame.components.end() ? Contributes::final : component->second);
-    one.ofNothing = compare(nothing, reference->mean, reference->variance, wish.exposure).rmse.value;
+    one.ofNothing = compare(nothing, reference->mean, reference->variance, wish.exposure).flip;
     outputs.push_back(std::move(one));
   }
   return outputs;

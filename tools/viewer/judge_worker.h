@@ -23,7 +23,7 @@ using RenderedResult = std::shared_ptr<const Rendered>;
 struct JudgedOutput {
   std::string output, layer;  ///< layer: of the reference that it is judged by
   ImageError error;
-  double ofNothing = 0.0;  ///< the RMSE of leaving it out: black, or 1 for ambient occlusion
+  double ofNothing = 0.0;  ///< the FLIP of leaving it out: black, or 1 for ambient occlusion
 };
 struct JudgeWish {
   RenderedResult rendered;

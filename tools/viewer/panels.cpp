@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/reasons.h"
 #include "lumivox/base/error.h"
@@ -15,8 +16,30 @@ namespace {
 
 using Kind = Row::Kind;
 
-std::string measuredText(const Measured& value) {
+/// `none`: what is said where there is no such number.
+std::string measuredText(const Measured& value, const std::string& none) {
+  if (!std::isfinite(value.value)) return none;
+  if (!std::isfinite(value.uncertainty)) return fmt::format("{:.4g}", value.value);
   return fmt::format("{:.4g} ± {:.2g}", value.value, value.uncertainty);
+}
+
+/// The errors of one output; FLIP leads, as on the page of a report.
+void addJudged(std::vector<Row>& rows, const JudgedOutput& one, const std::string& prefix) {
+  const std::string name = prefix + one.output, noPixel = "none: no pixel is a number in both images";
+  const ImageError& error = one.error;
+  const double overNothing = error.flip / one.ofNothing;
+  rows.push_back(text(name + " layer", one.output, "against " + one.layer));
+  rows.push_back(text(name + " flip", "  FLIP", measuredText({error.flip, error.flipUncertainty}, noPixel)));
+  rows.push_back(text(name + " of nothing", "  over that of none",
+                      std::isfinite(overNothing) ? fmt::format("{:.3f}", overNothing) : "-",
+                      "the FLIP over that of leaving the output out"));
+  rows.push_back(text(name + " rmse", "  RMSE", measuredText(error.rmse, noPixel)));
+  rows.push_back(
+      text(name + " mean ratio", "  mean ratio",
+           measuredText(error.meanRatio,
+                        std::isfinite(error.rmse.value) ? "none: the reference is black" : noPixel)));
+  rows.push_back(text(name + " noise", "  noise of the reference",
+                      std::isfinite(error.noiseFloor) ? fmt::format("{:.3g}", error.noiseFloor) : noPixel));
 }
 
 std::vector<std::string> stemsOf(const Session& session) {
@@ -106,7 +129,11 @@ Panel lookPanel(const Session& session) {
   rows.push_back(
       choice("tone", "tone", curveWords()[static_cast<std::size_t>(state.curve)], curveWords(), "tone {}"));
   const Picture& picture = session.picture();
-  if (!picture.legend.empty()) rows.push_back(text("legend", "legend", picture.legend));
+  if (!picture.legends.empty()) {
+    std::vector<std::string> legends;
+    for (const Legend& legend : picture.legends) legends.push_back(legend.text);
+    rows.push_back(text("legend", "legend", fmt::format("{}", fmt::join(legends, "; "))));
+  }
   rows.push_back(text("bad_pixels", "NaN or infinite pixels", fmt::format("{}", picture.badPixels)));
   rows.push_back(text("size", "size", fmt::format("{} x {}", state.width, state.height)));
   return panel;
@@ -126,29 +153,15 @@ Panel judgePanel(const Session& session) {
     for (std::size_t i = 0; i < judged->sides.size(); ++i) {
       panel.rows.push_back(heading(judged->wish.rendered->wish.sides[i].pipeline->file.stem().string() +
                                    (i == 0 ? "" : " (beside)")));
-      for (const JudgedOutput& one : judged->sides[i]) {
-        const std::string name = fmt::format("{}{}", i == 0 ? "" : "beside ", one.output);
-        const ImageError& error = one.error;
-        panel.rows.push_back(text(name + " layer", one.output, "against " + one.layer));
-        panel.rows.push_back(text(name + " rmse", "  RMSE", measuredText(error.rmse)));
-        panel.rows.push_back(
-            text(name + " of nothing", "  over that of none",
-                 one.ofNothing > 0.0 ? fmt::format("{:.3f}", error.rmse.value / one.ofNothing) : "-",
-                 "the RMSE over that of leaving the output out"));
-        panel.rows.push_back(text(name + " mean ratio", "  mean ratio", measuredText(error.meanRatio)));
-        panel.rows.push_back(text(name + " flip", "  FLIP",
-                                  fmt::format("{:.4f} ± {:.2g}", error.flip, error.flipUncertainty)));
-        panel.rows.push_back(
-            text(name + " noise", "  noise of the reference", fmt::format("{:.3g}", error.noiseFloor)));
-      }
+      for (const JudgedOutput& one : judged->sides[i]) addJudged(panel.rows, one, i == 0 ? "" : "beside ");
     }
   }
   Row chart;
   chart.kind = Kind::points;
   chart.name = "tried";
-  chart.label = "error of the whole image against time, ms";
+  chart.label = "FLIP of the whole image against time, ms";
   for (const TriedPoint& point : session.tried()) {
-    if (!point.error || point.frameMs <= 0.0) continue;
+    if (!point.error || !std::isfinite(point.error->value) || point.frameMs <= 0.0) continue;
     std::string statement = "show " + quoted(point.side.pipeline->file.stem().string());
     if (!point.side.values.empty()) {
       statement += "\nset {";

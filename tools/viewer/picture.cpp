@@ -47,6 +47,36 @@ Picture framed(const ImageBuffer& image, const Display& display) {
   return picture;
 }
 
+/// The values from `low` to `high` in even steps.
+ImageBuffer evenSteps(float low, float high) {
+  constexpr int kSteps = 64;
+  ImageBuffer map(kSteps, 1, 1);
+  for (int i = 0; i < kSteps; ++i)
+    map.at(i, 0, 0) = low + (high - low) * static_cast<float>(i) / static_cast<float>(kSteps - 1);
+  return map;
+}
+
+std::vector<unsigned char> falseColourRamp() {
+  return framed(falseColour(evenSteps(0.0f, 1.0f)), {}).bytes;
+}
+
+/// Blue below 0 and red above, full at 1; NaN where there is no number.
+void putSigned(float value, float* colour) {
+  const float strength = std::min(1.0f, std::abs(value));
+  colour[0] = value > 0.0f ? strength : 0.0f;
+  colour[1] = 0.0f;
+  colour[2] = value < 0.0f ? strength : 0.0f;
+  if (!std::isfinite(value)) std::fill_n(colour, 3, std::numeric_limits<float>::quiet_NaN());
+}
+
+std::vector<unsigned char> signedRamp() {
+  const ImageBuffer map = evenSteps(-1.0f, 1.0f);
+  ImageBuffer shown(map.width(), 1, 3);
+  for (std::size_t i = 0; i < map.pixelCount(); ++i)
+    putSigned(map.values()[i], shown.values().data() + 3 * i);
+  return framed(shown, {}).bytes;
+}
+
 }  // namespace
 
 Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
@@ -72,10 +102,10 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
     if (low == high) low = std::min(0.0f, low);  // one value is far from nothing
     for (float& value : map.values()) value = high > low ? (value - low) / (high - low) : 0.0f * value;
     picture = framed(falseColour(map), {});
-    picture.legend =
-        fmt::format("{} {:.4g} to {:.4g}{}{}", given.channels() == 1 ? "value" : "luminance", low, high,
-                    look.unit.empty() || look.unit == "1" ? "" : " ", look.unit == "1" ? "" : look.unit);
-    picture.range = {low, high};
+    picture.legends.push_back(
+        {fmt::format("{} {:.4g} to {:.4g}{}{}", given.channels() == 1 ? "value" : "luminance", low, high,
+                     look.unit.empty() || look.unit == "1" ? "" : " ", look.unit == "1" ? "" : look.unit),
+         falseColourRamp()});
   } else {
     picture = framed(image, {look.exposure, toneOf(look.curve)});
   }
@@ -83,18 +113,12 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
   return picture;
 }
 
-std::vector<unsigned char> falseColourRamp(int steps) {
-  ImageBuffer map(steps, 1, 1);
-  for (int i = 0; i < steps; ++i) map.at(i, 0, 0) = static_cast<float>(i) / static_cast<float>(steps - 1);
-  return framed(falseColour(map), {}).bytes;
-}
-
 Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map) {
   if (image.empty() || !image.sameShape(reference)) return {};
   Picture picture;
   if (map == ErrorMap::flip) {
     picture = framed(falseColour(flipHdr(image, reference)), {});
-    picture.legend = "HDR-FLIP 0 to 1";
+    picture.legends.push_back({"error: HDR-FLIP 0 to 1", falseColourRamp()});
     return picture;
   }
   const ImageBuffer made = luminance(image), truth = luminance(reference);
@@ -112,17 +136,15 @@ Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, Err
       // report.
       const auto relative =
           static_cast<float>(difference / std::max<double>(truth.values()[pixel], 0.01 * mean + 1e-30));
-      const float strength = std::min(1.0f, std::abs(relative));
-      colour[0] = relative > 0.0f ? strength : 0.0f;
-      colour[1] = 0.0f;
-      colour[2] = relative < 0.0f ? strength : 0.0f;
-      if (!std::isfinite(relative))
-        colour[0] = colour[1] = colour[2] = std::numeric_limits<float>::quiet_NaN();
+      putSigned(relative, colour);
     }
   }
   picture = framed(shown, {});
-  picture.legend = map == ErrorMap::squared ? fmt::format("squared difference, white: {:.4g}", mean * mean)
-                                            : "relative: blue too dark, red too bright, full at 100 %";
+  picture.legends.push_back(
+      map == ErrorMap::squared
+          ? Legend{fmt::format("error: squared difference 0 to {:.4g}", mean * mean),
+                   framed(evenSteps(0.0f, 1.0f), {}).bytes}
+          : Legend{"error: -100 % (blue, too dark) to 100 % (red, too bright)", signedRamp()});
   return picture;
 }
 
@@ -167,7 +189,10 @@ Picture besides(const Picture& left, const Picture& right) {
   picture.width = left.width + kGap + right.width;
   picture.height = std::max(left.height, right.height);
   picture.badPixels = left.badPixels + right.badPixels;
-  picture.legend = left.legend.empty() ? right.legend : left.legend;
+  picture.legends = left.legends;
+  for (const Legend& legend : right.legends)
+    if (std::ranges::find(left.legends, legend.text, &Legend::text) == left.legends.end())
+      picture.legends.push_back(legend);
   picture.bytes.assign(3 * static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
                        0);
   const auto put = [&](const Picture& part, int column) {

@@ -2,7 +2,6 @@
 // is no number.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,19 +24,22 @@ struct PictureLook {
   std::string unit{};  ///< of the values, for the legend
 };
 
+/// What colours stand for.
+struct Legend {
+  std::string text;                 ///< "luminance 0 to 12.5 W/(sr m^2)"
+  std::vector<unsigned char> ramp;  ///< the colours from low to high: red, green and blue each; may be empty
+};
+
 /// Red, green and blue, row by row from the top, as a screen takes them.
 struct Picture {
   int width = 0, height = 0;
   std::vector<unsigned char> bytes;
-  std::string legend;                            ///< "luminance 0 to 12.5 W/(sr m^2)"; empty: none
-  std::optional<std::pair<float, float>> range;  ///< that false colours run through
+  std::vector<Legend> legends;
   std::size_t badPixels = 0;
   bool empty() const { return bytes.empty(); }
 };
 
 Picture pictureOf(const ImageBuffer& image, const PictureLook& look);
-/// So many steps of the colours of false colour, from low to high: red, green and blue each.
-std::vector<unsigned char> falseColourRamp(int steps);
 /// Images of the same shape; other shapes give an empty picture.
 Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map);
 /// The first picture to the left of `at` (0..1 of the width), the second to the right, a line between.
@@ -46,7 +48,7 @@ Picture splitPicture(const Picture& left, const Picture& right, double at);
 /// the share of `behind`, black where there is none.
 Picture overlaid(const Picture& voxels, const ImageBuffer& brightness, const Picture& behind,
                  double seeThrough);
-/// Side by side, with a gap.
+/// Side by side, with a gap; a legend that both have is one.
 Picture besides(const Picture& left, const Picture& right);
 
 }  // namespace lumivox::viewer

@@ -53,7 +53,7 @@ struct TriedPoint {
   double frameMs = 0.0;
   std::vector<double> times;                              ///< of all frames, of which frameMs is the median
   std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last frames that were timed
-  std::optional<Measured> error;                          ///< RMSE of the whole image
+  std::optional<Measured> error;                          ///< FLIP of the whole image
 };
 
 /// A text for a file that was there already: it is asked for.

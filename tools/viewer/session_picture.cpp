@@ -92,8 +92,9 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
   if (port.isDirection && state_.curve != Curve::falseColour)
     for (float& value : values.values()) value = 0.5f + 0.5f * value;
   Picture picture = pictureOf(values, look);
-  if (picture.legend.empty() && values.channels() == 1)
-    picture.legend = fmt::format("grey: 0 to {:.4g} {}", std::exp2(-look.exposure), port.unit);
+  if (picture.legends.empty() && values.channels() == 1)
+    picture.legends.push_back(
+        {fmt::format("grey: 0 to {:.4g} {}", std::exp2(-look.exposure), port.unit), {}});
   if (port.brightness.empty()) return picture;
   return overlaid(picture, port.brightness,
                   pictureOf(outputOf(lastGood_->sides.front().frame, state_.output), outputLook),

@@ -150,7 +150,7 @@ void Session::noteTried() {
     }
     if (judges)
       for (const JudgedOutput& output : judged_->sides[i])
-        if (output.output == kWholeImage) known->error = output.error.rmse;
+        if (output.output == kWholeImage) known->error = {output.error.flip, output.error.flipUncertainty};
   }
   // A frame comes once with its images, and once more with its times.
   notedFrame_ = rendered_->wish.number;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/arrangement.h"
 #include "viewer/window_state.h"
 
 namespace lumivox::viewer {
@@ -26,7 +27,8 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
                    ImGuiWindowFlags_NoNavInputs);
   if (focus == "picture") ImGui::SetWindowFocus();
   picturesKeyboard = ImGui::IsWindowFocused();
-  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 all = ImGui::GetContentRegionAvail();
+  const ImVec2 room(all.x, std::max(std::min(all.y, 1.0f), all.y - legendHeight()));
   if (texture->width() > 0 && room.x >= 1.0f && room.y >= 1.0f) {
     const float factor = std::min(room.x / static_cast<float>(texture->width()),
                                   room.y / static_cast<float>(texture->height()));
@@ -58,7 +60,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
   } else {
     ImGui::TextUnformatted(session->problem().empty() ? "the first picture is being made ..." : "no picture");
   }
-  drawLegend(ImVec2(low.x + 16.0f, low.y + size.y - 48.0f * scale), size.x - 32.0f);
+  drawLegends(ImVec2(low.x + 16.0f, low.y + size.y), size.x - 32.0f);
   drawProblem(ImVec2(low.x + 8.0f, low.y + 8.0f), size.x - 16.0f);
   ImGui::End();
 }
@@ -84,36 +86,11 @@ void Window::State::drawMarks(const Row& row) {
     ImGui::TextUnformatted("  nothing yet");
     return;
   }
-  ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = std::max(32.0f, ImGui::GetContentRegionAvail().x);
   if (row.kind == Row::Kind::bars) return drawBars(row, corner, width);
   if (row.kind == Row::Kind::stacks) return drawStacks(row, corner, width);
-  // Both axes logarithmic: equal factors are equal ways.
-  const float height = 140.0f * scale;
-  double lowX = 1e300, highX = 0.0, lowY = 1e300, highY = 0.0;
-  for (const Row::Mark& mark : row.marks) {
-    lowX = std::min(lowX, std::max(mark.x, 1e-6)), highX = std::max(highX, std::max(mark.x, 1e-6));
-    lowY = std::min(lowY, std::max(mark.y, 1e-9)), highY = std::max(highY, std::max(mark.y, 1e-9));
-  }
-  lowX /= 1.5, highX *= 1.5, lowY /= 1.5, highY *= 1.5;
-  list->AddRect(corner, ImVec2(corner.x + width, corner.y + height), IM_COL32(128, 128, 128, 255));
-  for (std::size_t i = 0; i < row.marks.size(); ++i) {
-    const Row::Mark& mark = row.marks[i];
-    const auto x = static_cast<float>(std::log(std::max(mark.x, 1e-6) / lowX) / std::log(highX / lowX)),
-               y = static_cast<float>(std::log(std::max(mark.y, 1e-9) / lowY) / std::log(highY / lowY));
-    const ImVec2 at(corner.x + x * width, corner.y + (1.0f - y) * height);
-    const float radius = 4.0f * scale;
-    const ImVec2 low(at.x - radius, at.y - radius), high(at.x + radius, at.y + radius);
-    controls["judge/tried " + std::to_string(i)] = {low, high};
-    const bool hovered = ImGui::IsMouseHoveringRect(low, high);
-    list->AddCircleFilled(at, radius, hovered ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 160, 32, 255));
-    if (hovered) {
-      ImGui::SetTooltip("%s: %.2f ms, RMSE %.4g", mark.label.c_str(), mark.x, mark.y);
-      if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) act(mark.statement);
-    }
-  }
-  ImGui::Dummy(ImVec2(width, height));
+  drawChart(row, corner, width);
 }
 
 void Window::State::drawChoice(const Panel& panel, const Row& row) {
@@ -279,10 +256,17 @@ void Window::State::draw() {
   controls.clear();
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float side = showsPanels ? std::min(panelWidth * scale, 0.6f * all.x) : 0.0f;
-  drawPicture(ImVec2(0, 0), ImVec2(std::max(1.0f, all.x - side), std::max(1.0f, all.y)));
+  std::optional<float> above;
+  if (showsPanels && session->state().layout == Layout::sideBySide && texture->width() > 0)
+    above = heightAbovePanels(
+        {all.x, all.y, side, legendHeight() + 2.0f * ImGui::GetStyle().WindowPadding.y},
+        static_cast<float>(texture->width()) / static_cast<float>(std::max(1, texture->height())));
+  drawPicture(ImVec2(0, 0), above ? ImVec2(std::max(1.0f, all.x), *above)
+                                  : ImVec2(std::max(1.0f, all.x - side), std::max(1.0f, all.y)));
   if (showsPanels) {
-    ImGui::SetNextWindowPos(ImVec2(all.x - side, 0));
-    ImGui::SetNextWindowSize(ImVec2(std::max(1.0f, side), std::max(1.0f, all.y)));
+    ImGui::SetNextWindowPos(above ? ImVec2(0, *above) : ImVec2(all.x - side, 0));
+    ImGui::SetNextWindowSize(above ? ImVec2(std::max(1.0f, all.x), std::max(1.0f, all.y - *above))
+                                   : ImVec2(std::max(1.0f, side), std::max(1.0f, all.y)));
     ImGui::Begin("panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);

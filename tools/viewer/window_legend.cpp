@@ -1,4 +1,4 @@
-// The colours of false colour, with the values that they stand for.
+// What colours stand for, below the pictures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,24 +6,41 @@
 #include "viewer/window_state.h"
 
 namespace lumivox::viewer {
+namespace {
 
-void Window::State::drawLegend(const ImVec2& corner, float width) const {
-  const Picture& picture = session->picture();
-  if (!picture.range) return;
-  constexpr int kSteps = 64;
-  static const std::vector<unsigned char> ramp = falseColourRamp(kSteps);
+constexpr float kRampHeight = 14.0f, kRampWidth = 320.0f, kTextHeight = 22.0f;  // at a scale of 1
+
+}  // namespace
+
+/// Of all legends that have a ramp.
+float Window::State::legendHeight() const {
+  float height = 0.0f;
+  for (const Legend& legend : session->picture().legends)
+    if (!legend.ramp.empty()) height += (kRampHeight + kTextHeight) * scale;
+  return height;
+}
+
+/// One below the other; the last ends at the bottom.
+void Window::State::drawLegends(const ImVec2& bottom, float width) const {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  const float height = 14.0f * scale, step = std::min(width, 320.0f * scale) / kSteps;
-  for (int i = 0; i < kSteps; ++i) {
-    const auto* const colour = ramp.data() + 3 * static_cast<std::size_t>(i);
-    const float left = corner.x + step * static_cast<float>(i);
-    list->AddRectFilled(ImVec2(left, corner.y), ImVec2(left + step, corner.y + height),
-                        IM_COL32(colour[0], colour[1], colour[2], 255));
+  ImVec2 corner(bottom.x, bottom.y - legendHeight());
+  for (const Legend& legend : session->picture().legends) {
+    if (legend.ramp.empty()) continue;
+    const std::size_t steps = legend.ramp.size() / 3;
+    const float height = kRampHeight * scale;
+    const float step = std::min(width, kRampWidth * scale) / static_cast<float>(steps);
+    for (std::size_t i = 0; i < steps; ++i) {
+      const auto* const colour = legend.ramp.data() + 3 * i;
+      const float left = corner.x + step * static_cast<float>(i);
+      list->AddRectFilled(ImVec2(left, corner.y), ImVec2(left + step, corner.y + height),
+                          IM_COL32(colour[0], colour[1], colour[2], 255));
+    }
+    const ImVec2 below(corner.x, corner.y + height);
+    const ImVec2 size = ImGui::CalcTextSize(legend.text.c_str());
+    list->AddRectFilled(below, ImVec2(below.x + size.x, below.y + size.y), IM_COL32(0, 0, 0, 160));
+    list->AddText(below, IM_COL32(255, 255, 255, 255), legend.text.c_str());
+    corner.y = below.y + kTextHeight * scale;
   }
-  const ImVec2 below(corner.x, corner.y + height);
-  const ImVec2 size = ImGui::CalcTextSize(picture.legend.c_str());
-  list->AddRectFilled(below, ImVec2(below.x + size.x, below.y + size.y), IM_COL32(0, 0, 0, 160));
-  list->AddText(below, IM_COL32(255, 255, 255, 255), picture.legend.c_str());
 }
 
 }  // namespace lumivox::viewer

@@ -118,7 +118,9 @@ struct Window::State {
   void drawMarks(const Row& row);
   void drawBars(const Row& row, const ImVec2& corner, float width) const;
   void drawStacks(const Row& row, const ImVec2& corner, float width) const;
-  void drawLegend(const ImVec2& corner, float width) const;
+  void drawChart(const Row& row, const ImVec2& corner, float width);
+  float legendHeight() const;
+  void drawLegends(const ImVec2& bottom, float width) const;
   void drawHelp();
   void drawProblem(const ImVec2& at, float width);
   void feedClick();
