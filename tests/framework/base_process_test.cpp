@@ -1,8 +1,10 @@
 // Processes that wait for each other while times are taken.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -10,6 +12,7 @@
 #include "base/child.h"
 #include "base/process.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/start_process.h"
 #include "support/support.h"
 
@@ -96,6 +99,40 @@ TEST_CASE("a lock ends with its process, however that ends, and names it until t
   times.end();
   CHECK(waitFor(MachineLock::For::timing) < kAtOnce);
   CHECK(MachineLock::holders().empty());
+}
+
+TEST_CASE("whoever waits is told for whom in one line of the terminal, and not again for the same process") {
+  const OwnCache cache;
+  const std::string columns = std::getenv("COLUMNS") ? std::getenv("COLUMNS") : "";
+  setenv("COLUMNS", "70", 1);
+  const std::string command = "lumivox report " + std::string(800, 'x');
+  CHECK(processText(7, "") == "process 7");
+  CHECK(processText(7, "lumivox\nlist") == "process 7 (lumivox list)");
+  CHECK(("waiting for " + processText(7, command, 12)).size() == 70);
+  CHECK(processText(7, command, 12).find("process 7 (lumivox report xxx") == 0);
+  Holder times(MachineLock::For::timing, 60s);
+  if (!MachineLock::holders().empty()) {  // a system may hide it
+    // Processes that wait twice: each time as long as it takes until the holder is told.
+    const std::string told = cache.directory.path() / "told.txt";
+    const auto waits = [&] {
+      const pid_t waiting = fork();
+      if (waiting != 0) return waiting;
+      dup2(open(told.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), 2);
+      std::thread([] { const MachineLock lock(MachineLock::For::work); }).detach();
+      std::this_thread::sleep_for(1s);
+      std::thread([] { const MachineLock lock(MachineLock::For::work); }).detach();
+      std::this_thread::sleep_for(1s);
+      _exit(0);
+    };
+    waitpid(waits(), nullptr, 0);
+    const std::string line = readFile(told);
+    CHECK(line.find("waiting for process " + std::to_string(times.process()) + " (") == 0);
+    CHECK(std::count(line.begin(), line.end(), '\n') == 1);
+  }
+  if (columns.empty())
+    unsetenv("COLUMNS");
+  else
+    setenv("COLUMNS", columns.c_str(), 1);
 }
 
 TEST_CASE("where no file can be locked nobody is waited for") {

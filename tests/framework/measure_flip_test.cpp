@@ -1,18 +1,23 @@
 // FLIP against closed forms and against a direct evaluation of its definition, written here without separable
 // filters.
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/random.h"
 #include "lumivox/measure/metrics.h"
 #include "support/support.h"
 
 using namespace lumivox;
+using namespace lumivox::test;
 using Vector = std::array<double, 3>;
 
 namespace {
@@ -159,7 +164,8 @@ std::vector<double> directFlip(const ImageBuffer& image, const ImageBuffer& refe
         lab[which] = huntLabOf(rgb);
         double strength[4];  // the filters see (Y + 16) / 116; the offset has no features, so Y / 116 does as
                              // well
-        for (int k = 0; k < 4; ++k) strength[k] = filtered(opponent, width, height, x, y, 0, features[k]) / 116;
+        for (int k = 0; k < 4; ++k)
+          strength[k] = filtered(opponent, width, height, x, y, 0, features[k]) / 116;
         edges[which] = std::hypot(strength[0], strength[1]);
         points[which] = std::hypot(strength[2], strength[3]);
       }
@@ -337,6 +343,38 @@ TEST_CASE("HDR-FLIP of constant greys is LDR-FLIP at the exposure that shows the
   const ImageBuffer map = flipHdr(constant(8, 8, {7, 7, 7}), constant(8, 8, {3.5, 3.5, 3.5}));
   REQUIRE(expected > 0.02);
   REQUIRE(allNear(map, expected, 1e-5));
+}
+
+TEST_CASE("HDR-FLIP of brighter images is what pages, terminal and guide say") {
+  // Greys from 0.01 to 10.
+  ImageBuffer ramp(96, 48, 3);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 96; ++x)
+      for (int c = 0; c < 3; ++c)
+        ramp.at(x, y, c) = static_cast<float>(std::pow(10.0, -2.0 + 3.0 * x / 95.0));
+  const ImageBuffer grey = constant(96, 48, {0.5, 0.5, 0.5});
+  const auto brighter = [](ImageBuffer image, float factor) {
+    const ImageBuffer reference = image;
+    for (float& value : image.values()) value *= factor;
+    return meanOf(flipHdr(image, reference));
+  };
+  std::string guide = readFile(sourceDirectory() / "docs/metrics.md");
+  std::replace(guide.begin(), guide.end(), '\n', ' ');
+  CHECK(guide.find(kDefaultMetricSays) != std::string::npos);
+  const auto said = [&](const std::string& before, const std::string& form, const ImageBuffer& image) {
+    const std::size_t at = guide.find(before);
+    REQUIRE(at != std::string::npos);
+    std::string numbers;
+    for (const float factor : {1.02f, 1.1f, 1.5f})
+      numbers += (numbers.empty()  ? ""
+                  : factor == 1.5f ? " and "
+                                   : ", ") +
+                 fmt::format(fmt::runtime(form), brighter(image, factor));
+    INFO(numbers);
+    CHECK(guide.compare(at + before.size(), numbers.size(), numbers) == 0);
+  };
+  said("50 % brighter has ", "{:.2f}", ramp);
+  said("made brighter alike, has ", "{:.3f}", grey);
 }
 
 TEST_CASE("HDR-FLIP does not depend on the unit of radiance") {

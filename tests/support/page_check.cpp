@@ -214,6 +214,17 @@ constexpr const char* kLayout = R"js(
       // Lines of a text stand closer than their letters are high.
       if (across > 2 && down > 0.4 * Math.min(a.box.height, b.box.height)) problems.push("“" + a.what + "” and “" + b.what + "” lie upon each other");
     }
+  // A caption may be broken at spaces, hyphens and where the page says so, never within a word.
+  for (const caption of document.querySelectorAll("figcaption")) {
+    const within = document.createTreeWalker(caption, NodeFilter.SHOW_TEXT), range = document.createRange();
+    for (let node = within.nextNode(); node; node = within.nextNode())
+      for (const word of node.data.matchAll(/[^\s-]+/g)) {
+        range.setStart(node, word.index);
+        range.setEnd(node, word.index + word[0].length);
+        const lines = new Set([...range.getClientRects()].filter(box => box.width > 0).map(box => Math.round(box.top)));
+        if (lines.size > 1) problems.push("the word “" + word[0] + "” of a caption is broken");
+      }
+  }
   for (const element of document.body.querySelectorAll("*")) {
     const style = getComputedStyle(element);
     if (style.overflowX !== "visible" && style.overflowX !== "auto" && element.scrollWidth > element.clientWidth + 1 && element.clientWidth > 0)

@@ -24,7 +24,8 @@ struct PageFindings {
   /// Sentences, each with the element: a script's error, a blank canvas, a chart without a point in it, a
   /// control that changes nothing, a table without rows or with a cell like "undefined", an image that does
   /// not show, a link to nowhere, a request to elsewhere, a body wider than the window (1400, 800 and 390
-  /// pixels, and a sheet of paper), texts or images that lie upon each other, a text that is cut, a head that
+  /// pixels, and a sheet of paper), texts or images that lie upon each other, a text that is cut, a caption
+  /// that is broken within a word, a head that
   /// does not sort, arrow keys that tell no point, a control without a name, a text that is hardly darker or
   /// lighter than what is behind it (on a light and on a dark page).
   std::vector<std::string> problems;

@@ -174,13 +174,23 @@ async function main(file) {
   for (const id of ids) if (ids.indexOf(id) !== ids.lastIndexOf(id)) problems.push("two elements are called " + id);
   const links = body.tag("a").map(link => link.attributes.href);
   for (const href of links)
-    if (href.startsWith("#") && !ids.includes(href.slice(1))) problems.push("a link leads nowhere: " + href);
+    if (href && href.startsWith("#") && !ids.includes(href.slice(1))) problems.push("a link leads nowhere: " + href);
+  // Plots to save: texts of SVG in which every element ends.
+  const svgs = links.filter(href => href && href.startsWith("data:image/svg+xml")).map(href => decodeURIComponent(href.slice(href.indexOf(",") + 1)));
+  for (const svg of svgs) {
+    const open = [];
+    for (const [, end, tag, , single] of svg.matchAll(/<(\/?)([a-zA-Z]+)((?:\s+[a-zA-Z0-9-]+="[^"<]*")*)(\/?)>/g))
+      if (end) { if (open.pop() !== tag) problems.push("SVG: " + tag + " ends where it did not begin"); }
+      else if (!single) open.push(tag);
+    if (open.length > 0 || svg.replace(/<\/?[a-zA-Z]+(\s+[a-zA-Z0-9-]+="[^"<]*")*\/?>/g, "").includes("<")) problems.push("SVG: not well formed");
+    if (/NaN|undefined|Infinity/.test(svg)) problems.push("SVG: " + /.{0,60}(NaN|undefined|Infinity)/.exec(svg)[0]);
+  }
   const images = body.tag("img").map(image => image.attributes);
   for (const image of images)
     if (!image.alt || !image.src) problems.push("an image without a text or an address");
   const slip = /.{0,40}(undefined|\[object Object\]).{0,40}/.exec(body.textContent);
   if (slip) problems.push("the text says " + slip[0]);
-  process.stdout.write(JSON.stringify({ problems, text: body.textContent, html: body.serial(), tables, links, charts: chartFindings, controls,
+  process.stdout.write(JSON.stringify({ problems, text: body.textContent, html: body.serial(), tables, links, svgs, charts: chartFindings, controls,
                                         images: images.map(({ alt, src }) => ({ alt, src: src.slice(0, 40) })),
                                         headings: body.tag("h1", "h2", "h3", "h4").map(heading => heading.textContent) }));
 }

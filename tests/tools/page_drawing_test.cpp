@@ -2,10 +2,12 @@
 // table, and a text stays a text. The drawing itself is tried on pages that are broken.
 #include <algorithm>
 
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/page/page.h"
 #include "lumivox/page/reproduction_page.h"
 #include "lumivox/page/stress_page.h"
 #include "lumivox/page/voxel_page.h"
+#include "lumivox/results/text.h"
 #include "support/drawn_page.h"
 #include "support/page_check.h"
 #include "tools/cli_support.h"
@@ -98,7 +100,8 @@ ReportRecord badlyNamedReport() {
   pruning.pipeline = scene.points[1].point.pipeline;
   pruning.prunedMs = statisticsOf({1.0, 1.0, 1.0});
   pruning.unprunedMs = statisticsOf({4.0, 4.0, 4.0});
-  pruning.nextPrunedMs = pruning.nextUnprunedMs = pruning.prunedMs;
+  pruning.nextPrunedMs = statisticsOf({0.25, 0.25, 0.25});
+  pruning.nextUnprunedMs = pruning.unprunedMs;
   pruning.explanation.passesKept = 2;
   pruning.explanation.passesTotal = 5;
   pruning.explanation.leftOut.push_back(
@@ -251,7 +254,8 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   CHECK(contains(
       text,
       "What was needed: 2 of 5 passes of 1 pipeline; leaving out the rest saves up to 75.0 % of a first "
-      "frame (one&<i>) and 4.0 MiB of memory, and changes no image by a single bit."));
+      "frame (one&<i>) and 4.0 MiB of memory, and changes no image by a single bit. While the camera moves, what "
+      "stands still saves up to 75.0 % of a first frame (one&<i>)."));
   const Json summary = tableWith(page, {"Scene", "Pipeline", "Parameters"});
   REQUIRE(summary.size() == 8);
   CHECK(summary[1][2] == "samples 1");
@@ -269,7 +273,7 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   CHECK(needed[1][6] == "not run: the scene has no <light>");
   CHECK(needed[2][1] == "2 of 5");
   CHECK(needed[2][4] == "3.00 of 4.00 ms");
-  CHECK(needed[2][5] == "not measurable, of 1.00 ms");
+  CHECK(needed[2][5] == "0.750 of 1.00 ms");
   CHECK(needed[2][6] == "yes");
   CHECK(needed[3][6] == "failed: it does not fit <at all>");
   CHECK(needed[4][6] == "not measured");
@@ -383,6 +387,157 @@ TEST_CASE(
   CHECK_FALSE(contains(texts(page.at("headings")), "Error numbers"));
 }
 
+TEST_CASE("long lists are folded and say how many there are, one is one, and captions break at underscores") {
+  if (lacksNode()) return;
+  const TemporaryDirectory place;
+  ReportRecord record = reportWithVoxels();
+  SceneRecord& scene = record.scenes[0];
+  record.complete = true;
+  record.budgetSeconds = 5.0;
+  scene.leftOutPoints.emplace_back().pipeline = "late.pipeline";
+  for (PointRecord& point : scene.points)
+    point.images = {{kWholeImage, "final", "png", {{"one_bounce", "png", 0.25}}}};
+  scene.references.push_back({"one_bounce", "png", 1.0, 0.01, 0.5, 1.0});
+  Json page = drawn(record, place);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  std::string text = page.at("text"), html = page.at("html");
+  CHECK(contains(text, "Not judged:two&<i>"));
+  CHECK(contains(text, "What was found:three"));
+  CHECK(contains(text, "For 1 point there was no time within 5 s."));
+  CHECK(contains(text, "Which ones: 1 point"));
+  CHECK(contains(text, "Whole image: 7 images"));
+  CHECK(contains(html, "style=\"--figures:3\""));
+  CHECK(contains(html, "<span class=\"soft\">one_<wbr></wbr>bounce</span></figcaption>"));
+  CHECK(contains(html, "FLIP against one_<wbr></wbr>bounce: mean 0.250</figcaption>"));
+
+  const PointRecord notJudged = scene.points[5];
+  for (int i = 0; i < 11; ++i) scene.points.push_back(notJudged);
+  scene.points.front().point.healthFindings.assign(10, "pass paint: NaN");
+  page = drawn(record, place);
+  text = page.at("text");
+  html = page.at("html");
+  CHECK(contains(html, "<details><summary>Not judged: 12 points</summary>"));
+  CHECK(contains(html, "<details><summary>What was found: 11 findings</summary>"));
+}
+
+TEST_CASE("what HDR-FLIP says stands beside its first number, and two frames have no quartiles") {
+  if (lacksNode()) return;
+  const TemporaryDirectory place;
+  ReportRecord record = badlyNamedReport();
+  record.scenes[0].points[0].point.frameMs = statisticsOf({0.8, 1.2});
+  const Json page = drawn(record, place);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  CHECK(contains(page.at("text"), kDefaultMetricSays));
+  const Json summary = tableWith(page, {"Scene", "Pipeline", "Parameters"});
+  REQUIRE(summary.size() == 8);
+  CHECK(summary[1][3] == "1.00");
+  CHECK(summary[2][3] == "2.00 [1.99, 2.01]");
+  CHECK(formatQuartiles(statisticsOf({1.0, 2.0})).empty());
+  CHECK(formatQuartiles(statisticsOf({1.0, 2.0, 3.0})) == "[1.5, 2.5]");
+}
+
+TEST_CASE("what has one value is not drawn, and what has one choice is not asked") {
+  if (lacksNode()) return;
+  const TemporaryDirectory place;
+  ReportRecord record = reportWithVoxels();
+  for (PointRecord& one : record.scenes[0].points) {
+    if (!one.point.voxels) continue;
+    one.point.voxels->error = {20, 5, 0};
+    one.point.voxels->holes = {100, 40, 100, 8};
+  }
+  Json page = drawn(record, place);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  CHECK(page.at("charts").size() == 1);
+  CHECK(contains(
+      page.at("text"),
+      "Not drawn, since all points have the same: recall 1; precision 0.8; holes, rays along the axes "
+      "0.4; holes, oblique rays 0.08."));
+  CHECK(tableWith(page, {"Pipeline", "Parameters", "Voxels", "Grid"}).size() == 6);
+
+  // One share differs: there is nothing to choose it from.
+  record.scenes[0].points[0].point.voxels->holes = {100, 41, 100, 8};
+  page = drawn(record, place);
+  CHECK(page.at("problems").empty());
+  CHECK(page.at("charts").size() == 3);
+  std::string html = page.at("html");
+  CHECK_FALSE(contains(html, "data-choose=\"share\""));
+  CHECK(contains(html, "data-choose=\"light\""));
+  CHECK(contains(html, "sort by this column"));
+
+  // One point with one image, of which no other is known.
+  record.scenes[0].points.resize(1);
+  record.scenes[0].references.clear();
+  record.scenes[0].points[0].isDefault = true;
+  record.scenes[0].points[0].point.errors.resize(1);
+  record.scenes[0].points[0].images = {{kWholeImage, "final", "png", {}}};
+  record.scenes[0].pruning.clear();
+  record.scenes[0].unsuited.clear();
+  page = drawn(record, place);
+  CHECK(page.at("problems").empty());
+  html = page.at("html");
+  CHECK_FALSE(contains(html, "data-choose=\"light\""));
+  CHECK_FALSE(contains(html, "sort by this column"));
+  CHECK_FALSE(contains(html, "data-wipe"));
+  CHECK(contains(html, "<div class=\"strip\">"));
+}
+
+TEST_CASE("every chart can be saved as SVG with the names of its axes and of the points on the front") {
+  if (lacksNode()) return;
+  const TemporaryDirectory place;
+  const Json page = drawn(reportWithVoxels(), place);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  REQUIRE(page.at("svgs").size() == page.at("charts").size());
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  // The whole image against full transport of seven points: on the front are the three of "one", and the
+  // slowest.
+  const std::string svg = page.at("svgs")[0];
+  INFO(svg);
+  CHECK(contains(svg, ">frame time, ms</text>"));
+  CHECK(contains(svg, ">FLIP</text>"));
+  CHECK(count(svg, "class=\"point\"") == 6);
+  CHECK(count(svg, "class=\"legend\"") == 3);
+  CHECK(contains(svg, ">least error within a time</text>"));
+  const Json all = tableWith(page, {"Pipeline", "Parameters", "Frame, ms", "Error", "Front"});
+  std::size_t front = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (all[i][4] != "on the Pareto front") continue;
+    ++front;
+    std::string name = all[i][0].get<std::string>() + ", " + all[i][1].get<std::string>();
+    for (const auto& [from, to] : {std::pair{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}})
+      for (std::size_t at = name.find(from); at != std::string::npos; at = name.find(from, at + 1))
+        name.replace(at, 1, to);
+    INFO(name);
+    CHECK(count(svg, ">" + name + "</text>") == 1);
+  }
+  CHECK(front > 2);
+  CHECK(count(svg, "class=\"name\"") == front);
+  // No name stands upon another: lines of 11 pixels, letters about 6 wide.
+  std::vector<std::pair<double, double>> names;
+  for (std::size_t at = svg.find("<text "); at != std::string::npos; at = svg.find("<text ", at + 1)) {
+    const std::string tag = svg.substr(at, svg.find('>', at) - at);
+    if (!contains(tag, "class=\"name\"")) continue;
+    names.emplace_back(std::stod(tag.substr(tag.find("x=\"") + 3)),
+                       std::stod(tag.substr(tag.find("y=\"") + 3)));
+  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      CHECK((std::abs(names[i].first - names[j].first) > 60 ||
+             std::abs(names[i].second - names[j].second) > 10));
+  // Against recall no point is on a front.
+  const std::string recall = page.at("svgs")[1];
+  CHECK(contains(recall, ">recall</text>"));
+  CHECK(count(recall, "class=\"point\"") == 5);
+  CHECK(count(recall, "class=\"name\"") == 0);
+}
+
 TEST_CASE("the page of the stress battery draws its matrix, its concerns and their images") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
@@ -448,7 +603,9 @@ TEST_CASE("the page of the voxelizers draws its charts and both kinds of growth"
   const Json page = drawnPage(files.page);
   INFO(texts(page.at("problems")));
   CHECK(page.at("problems").empty());
-  CHECK(page.at("charts").size() == 3);
+  // All have as many triangles.
+  CHECK(page.at("charts").size() == 2);
+  CHECK(contains(page.at("text"), "x, triangles: not drawn, since all points have the same triangles, 100."));
   CHECK(tableWith(page, {"Scene", "Voxelizer"}).size() == 4);
   CHECK(contains(page.at("text"), "it is <lost>"));
   const Json growth = tableWith(page, {"Source", "Voxelizer"});

@@ -92,6 +92,9 @@ TEST_CASE("the check finds nothing wrong with a good page and something wrong wi
            Break{"<h1", "<div style=\"position:absolute;top:30px\">above</div><h1", "lie upon each other"},
            Break{"<h1", "<p style=\"width:60px;overflow:hidden;white-space:nowrap\">a long text</p><h1",
                  "is cut"},
+           Break{"<h1",
+                 "<figcaption style=\"width:60px;overflow-wrap:anywhere\">reference_of_all</figcaption><h1",
+                 "of a caption is broken"},
            Break{"<h1", "<p style=\"color:#bbb\">pale</p><h1", "on a light page: “pale” has a contrast of"},
            Break{"<label>", "<span>", "no name for a screen reader"},
        }) {

@@ -61,9 +61,11 @@ std::string asText(const PruningRecord& record) {
                   explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
                   explanation.variantsCompiled, explanation.variantsNeeded);
   if (timed)
-    text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera\n",
-                        formatPercent(std::max(record.savedShare(), 0.0)),
-                        formatPercent(std::max(record.savedShareNext(), 0.0)));
+    text += fmt::format(
+        "left out: {} of the time of a first frame, against the same with everything kept\n"
+        "stands still: {} of the time of a first frame, which the next ones with a moving camera do not take\n",
+        formatPercent(std::max(record.savedShare(), 0.0)),
+        formatPercent(std::max(record.standingShare(), 0.0)));
   text += fmt::format("memory of the passes {} in place of {}; same image: {}\n",
                       formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
                       record.sameImage ? painted(Paint::good, "yes") : painted(Paint::bad, "NO"));

@@ -119,10 +119,9 @@ double positiveNumberOf(const std::string& option, const std::string& text) {
 }
 
 std::string quartilesText(const TimingStatistics& time) {
-  return time.repeats == 0
-             ? "-"
-             : fmt::format("{} [{}, {}]", formatMilliseconds(time.median),
-                           formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
+  if (time.repeats == 0) return "-";
+  const std::string quartiles = formatQuartiles(time);
+  return formatMilliseconds(time.median) + (quartiles.empty() ? "" : " " + quartiles);
 }
 
 std::string parametersText(const std::map<std::string, std::string>& parameters) {

@@ -50,7 +50,7 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
     bytes += one->unprunedBytes - std::min(one->prunedBytes, one->unprunedBytes);
     if (one->prunedMs.repeats > 0 && (first == nullptr || one->savedShare() > first->savedShare()))
       first = one;
-    if (one->prunedMs.repeats > 0 && (next == nullptr || one->savedShareNext() > next->savedShareNext()))
+    if (one->prunedMs.repeats > 0 && (next == nullptr || one->standingShare() > next->standingShare()))
       next = one;
     if (!one->sameImage) changed += " " + std::filesystem::path(one->pipeline).stem().string();
   }
@@ -63,13 +63,15 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
   if (kept == all && bytes == 0) return fmt::format("all {} passes of {} are needed", all, those);
   std::string text = fmt::format("{} of {} passes of {} are needed; leaving out the rest saves {}", kept, all,
                                  those, formatBytes(bytes));
+  std::string still;
   if (first != nullptr)
     text +=
         saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
   if (next != nullptr)
-    text += saved(*next, savingText(next->savedShareNext(), next->nextPrunedMs, next->nextUnprunedMs),
-                  "a later one");
-  return text + (changed.empty() ? " and changes no image by a bit" : " and CHANGES the image of" + changed);
+    still = saved(*next, savingText(next->standingShare(), next->nextPrunedMs, next->prunedMs),
+                  "a first frame's time");
+  text += changed.empty() ? " and changes no image by a bit" : " and CHANGES the image of" + changed;
+  return text + (still.empty() ? "" : "; what stands still while the camera moves saves" + still.substr(1));
 }
 
 /// Of a scene: the least error, the fastest, and which no other beats.
@@ -119,10 +121,10 @@ void printSummary(const ReportSummary& summary, const ReportOptions& options) {
     rows.push_back(std::move(row));
   }
   std::string table = groupedTable(rows, 1), text;
-  text +=
-      "FLIP: HDR-FLIP of the whole image against full transport: 0 where a viewer sees no difference, below "
-      "0.1 next to none, 1 at most; ± one standard uncertainty. Of black: RMSE over that of no light at "
-      "all.\n";
+  text += fmt::format(
+      "FLIP: of the whole image against full transport, ± one standard uncertainty. {} Of black: RMSE over "
+      "that of no light at all.\n",
+      kDefaultMetricSays);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i]->failure.empty()) text += fmt::format("{} failed: {}\n", names[i], points[i]->failure);
     if (!points[i]->healthFindings.empty())

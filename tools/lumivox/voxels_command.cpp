@@ -63,8 +63,7 @@ void printTable(const std::vector<VoxelizerRecord>& records) {
     }
     rows.push_back({record.label(), std::to_string(record.resolution), std::to_string(record.triangles),
                     formatMilliseconds(record.frameMs.median),
-                    fmt::format("[{}, {}]", formatMilliseconds(record.frameMs.lowerQuartile),
-                                formatMilliseconds(record.frameMs.upperQuartile)),
+                    record.frameMs.repeats < kLeastRepeats ? "-" : formatQuartiles(record.frameMs),
                     record.fragments == 0 ? "-" : std::to_string(record.fragments),
                     std::to_string(record.occupied), fmt::format("{:.4f}", record.error.recall()),
                     fmt::format("{:.4f}", record.error.precision()), percentText(record.holes.axisShare()),

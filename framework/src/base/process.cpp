@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/terminal.h"
 
 namespace lumivox {
 namespace {
@@ -62,15 +64,22 @@ class OpenFile {
   int handle_ = -1;
 };
 
-std::string holdersText() {
-  std::string text;
-  for (const int process : MachineLock::holders()) {
-    if (process == getpid()) continue;
-    const std::string command = commandOf(process);
-    text += fmt::format("{}process {}{}", text.empty() ? "" : ", ", process,
-                        command.empty() ? "" : " (" + command + ")");
-  }
-  return text.empty() ? "another process of this user" : text;
+/// The others that hold the lock. Who waits once more for those of the last time has been told.
+void tellHolders(const std::string& why) {
+  static std::mutex mutex;
+  static std::vector<int> told;
+  std::vector<int> processes = MachineLock::holders();
+  processes.erase(std::remove(processes.begin(), processes.end(), static_cast<int>(getpid())),
+                  processes.end());
+  std::sort(processes.begin(), processes.end());
+  const std::lock_guard guard(mutex);
+  if (!processes.empty() && processes == told) return;
+  told = processes;
+  const std::string before = "waiting for ";
+  if (processes.empty()) return logInformation("{}another process of this user{}", before, why);
+  const std::string more = processes.size() > 1 ? fmt::format(" and {} more", processes.size() - 1) : "";
+  const std::size_t others = shownWidth(before + more + why);
+  logInformation("{}{}{}{}", before, processText(processes[0], commandOf(processes[0]), others), more, why);
 }
 
 }  // namespace
@@ -103,6 +112,18 @@ std::string commandOf(int process) {
   while (!command.empty() && command.back() == '\0') command.pop_back();
   std::replace(command.begin(), command.end(), '\0', ' ');
   return command;
+}
+
+std::string processText(int process, const std::string& command, std::size_t before) {
+  std::string text = fmt::format("process {}", process);
+  if (command.empty()) return text;
+  constexpr std::size_t kLeast = 20;  // columns of a command that tell it
+  const std::size_t taken = before + text.size() + 3;
+  const auto columns = static_cast<std::size_t>(terminalColumns(STDERR_FILENO));
+  // What a command says after a line break would stand in a line of its own.
+  std::string line = command;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return text + " (" + cutTo(line, columns > taken + kLeast ? columns - taken : kLeast) + ")";
 }
 
 fs::path MachineLock::file() {
@@ -152,9 +173,8 @@ int MachineLock::lockedFor(For purpose) {
       std::this_thread::sleep_for(kPause);
     }
     if (!std::exchange(told, true))
-      logInformation(
-          "waiting for {}{}", holdersText(),
-          purpose == For::timing ? ", whose work would disturb the times" : ", which is taking times");
+      tellHolders(purpose == For::timing ? ", whose work would disturb the times"
+                                         : ", which is taking times");
     one.lock(kind);
   };
   take(gate, LOCK_EX);

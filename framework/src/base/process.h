@@ -14,6 +14,9 @@ std::string machineIdentity();
 std::uint64_t startOf(int process);
 /// Its command line; empty: there is none, or it is none of ours.
 std::string commandOf(int process);
+/// What is said of a process that is waited for: "process 708 (lumivox report ..)", the command cut so that
+/// the terminal shows it in a line behind `before` columns.
+std::string processText(int process, const std::string& command, std::size_t before = 0);
 
 /// Holds back other processes of this user on this machine. Work that keeps the processors or the device busy
 /// goes on in several processes at once; while one takes times, no other works. Whoever must wait says for

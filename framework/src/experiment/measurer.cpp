@@ -193,10 +193,11 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
 
 std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const {
   for (const WantedPoint& point : pending)
-    if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point)))
-      return fmt::format("waiting for {} point{}, the first of which process {} measures{}", pending.size(),
-                         pending.size() == 1 ? "" : "s", claim->process,
-                         claim->command.empty() ? "" : ": " + claim->command);
+    if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point))) {
+      const std::string before = fmt::format("waiting for {} point{}, the first measured by ", pending.size(),
+                                             pending.size() == 1 ? "" : "s");
+      return before + processText(claim->process, claim->command, before.size());
+    }
   return fmt::format("waiting for {} point{} that other processes measure", pending.size(),
                      pending.size() == 1 ? "" : "s");
 }

@@ -28,7 +28,7 @@ std::string html(const Document& document) {
   std::string records = block("data", document.data), scripts;
   if (!document.images.is_null()) records += block("images", document.images);
   if (document.charts) scripts += script(chartLibrary());
-  scripts += script(assets::kPageJs);
+  scripts += script(assets::kPlotsJs) + script(assets::kPageJs);
   for (const char* text : document.scripts) scripts += script(text);
   // Inserted text may contain such words itself, so the page is put together from its end.
   std::string page = assets::kPageHtml;

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 /// The metrics that the page compares pipelines by.
 constexpr const char* kMetrics[] = {kDefaultMetric, "rmse", "relative_mse", "percentile95"};
 
-/// The share of a time saved by leaving out, where it exceeds the spread of the repeats.
+/// The share of a time saved by leaving out or standing still, where it exceeds the spread of the repeats.
 Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   const Measured before = medianOf(unpruned), after = medianOf(pruned);
   if (before.value <= 0.0 || unpruned.repeats == 0)
@@ -46,7 +46,7 @@ Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
   for (const PruningRecord& pruning : scene.pruning) {
     Json one = toJson(pruning);
     one["first_frame_saves"] = savingJson(pruning.prunedMs, pruning.unprunedMs);
-    one["later_frames_save"] = savingJson(pruning.nextPrunedMs, pruning.nextUnprunedMs);
+    one["standing_saves"] = savingJson(pruning.nextPrunedMs, pruning.prunedMs);
     json["pruning"].push_back(std::move(one));
   }
   json["components"] = componentsOf(points);
@@ -102,7 +102,8 @@ Json reportJson(const ReportRecord& record) {
                     {"timer_note", record.device.timerNote},
                     {"host", record.host}};
   json["peak_rates"] = toJson(record.peakRates);
-  json["units"] = {{"error", "radiance, W/(sr m^2)"}, {"time", "ms"}, {"memory", "bytes"}};
+  json["units"] = {
+      {"error", "radiance, W/(sr m^2)"}, {"flip", kDefaultMetricSays}, {"time", "ms"}, {"memory", "bytes"}};
   json["pipelines"] = Json::array();
   for (const PipelineRecord& pipeline : record.pipelines)
     json["pipelines"].push_back({{"file", pipeline.file}, {"name", pipeline.name}, {"hash", pipeline.hash}});

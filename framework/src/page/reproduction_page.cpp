@@ -26,10 +26,10 @@ std::string measuredText(const MeasuredRow& row) {
   constexpr double kMillisecondsPerSecond = 1000.0;
   if (row.quantity == PublishedQuantity::frameRate)
     return fmt::format("{:.3g} {}", kMillisecondsPerSecond / row.measured->median, unit(row.quantity));
-  if (row.quantity == PublishedQuantity::time)
-    return fmt::format("{} [{}, {}] ms", formatMilliseconds(row.measured->median),
-                       formatMilliseconds(row.measured->lowerQuartile),
-                       formatMilliseconds(row.measured->upperQuartile));
+  if (row.quantity == PublishedQuantity::time) {
+    const std::string quartiles = formatQuartiles(*row.measured);
+    return formatMilliseconds(row.measured->median) + (quartiles.empty() ? "" : " " + quartiles) + " ms";
+  }
   return withUnit(row.measured->median, unit(row.quantity));
 }
 

@@ -171,7 +171,7 @@ Json toJson(const PruningRecord& record) {
                {"saved_share", share(record.savedShare())},
                {"next_frame_ms", time(record.nextPrunedMs)},
                {"next_frame_ms_keep_everything", time(record.nextUnprunedMs)},
-               {"saved_share_next", share(record.savedShareNext())},
+               {"standing_share", share(record.standingShare())},
                {"bytes", record.prunedBytes},
                {"bytes_keep_everything", record.unprunedBytes},
                {"same_image", record.sameImage}};

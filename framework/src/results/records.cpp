@@ -45,8 +45,8 @@ CostParts costParts(const ReportPoint& point) {
 double PruningRecord::savedShare() const {
   return saved(prunedMs, unprunedMs);
 }
-double PruningRecord::savedShareNext() const {
-  return saved(nextPrunedMs, nextUnprunedMs);
+double PruningRecord::standingShare() const {
+  return saved(nextPrunedMs, prunedMs);
 }
 
 double VoxelizerRecord::bytesPerFragment() const {

@@ -14,6 +14,12 @@ std::string formatMilliseconds(double milliseconds) {
                                               : fmt::format("{:.3g}", milliseconds);
 }
 
+std::string formatQuartiles(const TimingStatistics& time) {
+  if (time.repeats < kLeastRepeats) return {};
+  return fmt::format("[{}, {}]", formatMilliseconds(time.lowerQuartile),
+                     formatMilliseconds(time.upperQuartile));
+}
+
 std::string formatThousands(double value) {
   constexpr std::array<const char*, 6> kThousands{"", " k", " M", " G", " T", " P"};
   constexpr double kNext = 999.5;  // what would round to 1000 at three digits

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/process.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/base/log.h"
 #include "results/store_state.h"
@@ -148,8 +149,8 @@ void UnfinishedStore::sayWhatStays() const {
   const std::vector<Report> reports = others();
   for (const Report& other : reports) {
     if (lives(other.claim)) {
-      logInformation("{}: stays, process {} keeps its points there{}", file, other.claim.process,
-                     other.claim.command.empty() ? "" : ": " + other.claim.command);
+      const std::string before = file + ": stays, it keeps the points of ";
+      logInformation("{}{}", before, processText(other.claim.process, other.claim.command, before.size()));
     } else if (const std::size_t runs = runsOf(other.id); runs > 0) {
       logInformation("{}: stays, it keeps {} point{} of an interrupted report{}", file, runs,
                      runs == 1 ? "" : "s",

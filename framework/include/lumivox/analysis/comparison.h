@@ -16,6 +16,10 @@ namespace lumivox {
 /// The metric that pipelines are compared by unless another is asked for. FLIP ends at 1 in every pixel, so
 /// that no handful of bright pixels decides, and needs no choice of exposure (docs/metrics.md).
 inline constexpr const char* kDefaultMetric = "flip";
+/// What its number means, beside every first number of it: on pages, in the terminal, in docs/metrics.md.
+inline constexpr const char* kDefaultMetricSays =
+    "HDR-FLIP: 0 where a viewer sees no difference, 1 at most; a ramp of greys made 2 %, 10 % and 50 % "
+    "brighter has 0.04, 0.12 and 0.34.";
 
 /// One point of a sweep, timed and judged.
 struct ComparedPoint {

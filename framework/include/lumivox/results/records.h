@@ -125,8 +125,10 @@ struct PruningRecord {
   std::uint64_t prunedBytes = 0, unprunedBytes = 0;  ///< all resources of the passes
   bool sameImage = false;                            ///< bit for bit: the law of leaving out
 
-  double savedShare() const;      ///< of the unpruned frame time, 0..1
-  double savedShareNext() const;  ///< of that of a frame that follows another, with a moving camera
+  double savedShare() const;  ///< by leaving out: of the unpruned time of a first frame, 0..1
+  /// By what stands still: of the pruned time of a first frame, what a later one with a moving camera does
+  /// not take.
+  double standingShare() const;
 };
 
 /// A peak rate of one device, measured: `lumivox device`.

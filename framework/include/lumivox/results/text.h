@@ -3,12 +3,15 @@
 
 #include <string>
 
+#include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
 
 namespace lumivox {
 
 /// Three digits, whole from 100 on: "0.0123", "4.56", "1548".
 std::string formatMilliseconds(double milliseconds);
+/// "[1.1, 1.4]"; empty: there are none of fewer than kLeastRepeats repeats.
+std::string formatQuartiles(const TimingStatistics& time);
 
 /// Three digits and the thousands: "1.23 G", "45.6 k".
 std::string formatThousands(double value);

@@ -2,8 +2,9 @@
 // Pipelines against each other in one scene: what is compared is chosen once, and the plot of error against time, the table of the
 // default points and the tables of fronts, equal time and equal error follow.
 const comparisonOf = (function () {
-  const { data, h, caption, list, table, chooser, sortedBy, isNumber, milliseconds, number, measured, quartiles, plain, soft, shortName,
-          pipelineName, words, parametersText, componentTitle, percent, bytes, listed, style, theme, swatch, chart } = lumivox;
+  const { data, h, caption, list, longList, folded, plural, counted, table, chooser, sortedBy, isNumber, milliseconds, number, measured, quartiles, hasQuartiles,
+          plain, soft, shortName, pipelineName, words, parametersText, componentTitle, percent, bytes, listed, style, theme, swatch,
+          chart } = lumivox;
   const metrics = { flip: "FLIP", rmse: "RMSE", relative_mse: "relative MSE", percentile95: "95th percentile" };
   const units = { flip: "", rmse: "W/(sr m²)", relative_mse: "", percentile95: "W/(sr m²)" };
   const members = { flip: "flip_hdr", rmse: "rmse", relative_mse: "relative_mse", percentile95: "percentile_95" };
@@ -30,9 +31,11 @@ const comparisonOf = (function () {
           const top = y.getPixelForValue(point.y + point.uncertainty);
           const bottom = point.y > point.uncertainty ? y.getPixelForValue(point.y - point.uncertainty) : chartArea.bottom;
           ctx.beginPath();
-          ctx.moveTo(left, py); ctx.lineTo(right, py);
-          ctx.moveTo(left, py - 4); ctx.lineTo(left, py + 4);
-          ctx.moveTo(right, py - 4); ctx.lineTo(right, py + 4);
+          if (point.low < point.high) {
+            ctx.moveTo(left, py); ctx.lineTo(right, py);
+            ctx.moveTo(left, py - 4); ctx.lineTo(left, py + 4);
+            ctx.moveTo(right, py - 4); ctx.lineTo(right, py + 4);
+          }
           ctx.moveTo(px, top); ctx.lineTo(px, bottom);
           ctx.moveTo(px - 4, top); ctx.lineTo(px + 4, top);
           ctx.moveTo(px - 4, bottom); ctx.lineTo(px + 4, bottom);
@@ -46,7 +49,10 @@ const comparisonOf = (function () {
   function drawnPoint(comparison, index) {
     const point = comparison.points[index], time = point.frame_ms;
     const by = point.beaten_by === null ? null : comparison.points[point.beaten_by];
-    return { x: time.median, y: point.error.value, low: time.lower_quartile, high: time.upper_quartile,
+    const differing = differingParameters(comparison, point);
+    return { x: time.median, y: point.error.value,
+             name: by === null ? shortName(point.file) + (differing === "default" ? "" : ", " + differing) : null, low: hasQuartiles(time) ? time.lower_quartile : time.median,
+             high: hasQuartiles(time) ? time.upper_quartile : time.median,
              uncertainty: point.error.uncertainty || 0, front: by === null,
              text: parametersText(point.parameters) + ": " + milliseconds(time.median) + " ms, " + plain(point.error)
                + (by === null ? "; on the Pareto front" : "; beaten by " + shortName(by.file) + " (" + parametersText(by.parameters) + ")") };
@@ -140,24 +146,34 @@ const comparisonOf = (function () {
   function voxelsSection(scene, comparisons, chosen, follow, following) {
     const drawable = comparison => comparison.points.some(point => point.error.value > 0 && judgedVoxels(scene, point));
     const all = comparisons.filter(drawable);
+    // What is the same at all points has no plot, only its column in the table.
+    const judged = scene.points.filter(point => point.voxels && isNumber(point.voxels.recall));
+    const differs = name => new Set(judged.map(point => point.voxels[name])).size > 1;
+    const names = Object.keys(shares), differing = names.filter(differs), same = names.filter(name => !differs(name));
     const notJudged = scene.points.filter(point => point.voxels && point.voxels.why_not);
-    const missing = notJudged.length > 0 && [h("p", null, "Not judged:"), list(notJudged.map(point =>
-      shortName(point.pipeline) + ", " + parametersText(point.parameters) + ": " + point.voxels.output + ", " + point.voxels.why_not))];
+    const missing = notJudged.length > 0 && longList("Not judged", notJudged.map(point =>
+      shortName(point.pipeline) + ", " + parametersText(point.parameters) + ": " + point.voxels.output + ", " + point.voxels.why_not), "point");
     if (all.length === 0) return missing ? [missing] : null;
-    let share = "recall", last = all[0];
+    let share = differing[0], last = all[0];
     const shown = () => last = drawable(chosen()) ? chosen() : last;
-    const byShare = chart(() => shareConfiguration(scene, shown(), share), { "data-chart": "recall" }, "Error against the recall of the voxels");
-    const byTime = chart(() => configuration(shown()), { "data-chart": "time" }, "Error against frame time of the same comparison");
-    follow(byShare.redraw);
-    follow(byTime.redraw);
+    const plots = () => {
+      const byShare = chart(() => shareConfiguration(scene, shown(), share), { "data-chart": "recall" }, "Error against the recall of the voxels");
+      const byTime = chart(() => configuration(shown()), { "data-chart": "time" }, "Error against frame time of the same comparison");
+      follow(byShare.redraw);
+      follow(byTime.redraw);
+      const choices = Object.fromEntries(differing.map(name => [name, shares[name]]));
+      return [h("p", { class: "choices" }, chooser("Over", "share", choices, share, value => { share = value; byShare.redraw(); })),
+              following(() => caption(h("b", null, titleOf(shown())), ", ", metrics[shown().metric], ".")),
+              h("div", { class: "charts" }, h("figure", null, byShare.frame), h("figure", null, byTime.frame))];
+    };
     return [
       caption("The voxels that indirect light is gathered from, against the exact test of triangles and boxes. Of lists of fragments it is the "
         + "one nearest to the output; without a list the nearest grid that says which voxels are occupied. Recall: share of the touched voxels "
         + "that are occupied. Precision: share of the occupied voxels that are touched. Holes: share of the crossings of straight rays with the "
         + "surface at which the ray meets no occupied voxel within a voxel and a half. First seed."),
-      h("p", { class: "choices" }, chooser("Over", "share", shares, share, value => { share = value; byShare.redraw(); })),
-      following(() => caption(h("b", null, titleOf(shown())), ", ", metrics[shown().metric], ".")),
-      h("div", { class: "charts" }, h("figure", null, byShare.frame), h("figure", null, byTime.frame)),
+      same.length > 0 && h("p", null, "Not drawn, since all points have the same: " + same.map(name => shares[name] + " "
+        + number(judged[0].voxels[name])).join("; ") + "."),
+      differing.length > 0 && plots(),
       following(() => table(
         columns("Pipeline", "Parameters", "Voxels", ...["Grid", "Occupied", "Recall", "Precision", "Holes, axis rays", "Holes, oblique rays", "Error"]
           .map(title => [title, "number"])),
@@ -198,12 +214,12 @@ const comparisonOf = (function () {
   function beatenList(comparison) {
     const beaten = comparison.pipelines.map((pipeline, index) => ({ pipeline, index })).filter(one => !one.pipeline.on_front);
     if (beaten.length === 0) return h("p", null, "Every pipeline is unbeaten at some frame time.");
-    return [h("p", null, "Beaten at every frame time:"), list(beaten.map(({ pipeline, index }) => {
+    return longList("Beaten at every frame time", beaten.map(({ pipeline, index }) => {
       const by = [...new Set(comparison.points.filter(point => point.pipeline === index && point.beaten_by !== null)
         .map(point => comparison.points[point.beaten_by].pipeline))].sort((a, b) => a - b);
       return shortName(pipeline.file) + ", by " + by.map(at => at === index ? "itself at other parameters"
         : shortName(comparison.pipelines[at].file)).join(", ");
-    }))];
+    }), "pipeline");
   }
 
   function reachedCell(cell, value, notReached, text) {
@@ -301,11 +317,13 @@ const comparisonOf = (function () {
     const one = scene.comparisons[0];
     let text = " Times count as different beyond " + (100 * one.least_time_share).toFixed(1) + " %" + (one.controls === 0
       ? ", since no point was timed twice here."
+      : one.controls === 1 ? ": so far apart lay the two times of a point that was timed twice, and at least 5 %."
       : ": so far apart, at most, lay the times of " + one.controls + " points that were timed twice, and at least 5 %.");
     const undecided = scene.comparisons.reduce((most, other) => other.undecided > most.undecided ? other : most);
     if (undecided.undecided > 0)
-      text += " Of " + undecided.undecided + " of " + undecided.points.length + " points there are fewer than " + data.least_repeats
-        + " timed frames or seeds: whether they are better or worse is undecided, and they neither beat nor are beaten.";
+      text += " " + undecided.undecided + " of " + plural(undecided.points.length, "point") + (undecided.undecided === 1 ? " has" : " have")
+        + " fewer than " + data.least_repeats + " timed frames or seeds: whether better or worse is undecided, and no such point beats another "
+        + "or is beaten.";
     return text;
   }
 
@@ -323,10 +341,11 @@ const comparisonOf = (function () {
 
   /** The points for which there was no time; null: none. */
   const leftOut = scene => scene.left_out_points.length === 0 ? null : !data.complete
-    ? h("p", null, `${scene.left_out_points.length} points are still to come.`)
-    : [h("p", null, `For ${scene.left_out_points.length} points there was no time within ${data.budget_s} s. The same command goes on with them: `,
+    ? h("p", null, plural(scene.left_out_points.length, "point") + (scene.left_out_points.length === 1 ? " is" : " are") + " still to come.")
+    : [h("p", null, `For ${plural(scene.left_out_points.length, "point")} there was no time within ${data.budget_s} s. The same command goes on: `,
          h("code", null, data.command)),
-       lumivox.folded("Which ones", list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))))];
+       folded(counted("Which ones", scene.left_out_points.length, "point"), list(scene.left_out_points.map(point =>
+         shortName(point.pipeline) + ": " + parametersText(point.parameters))))];
 
   /** Of a scene: { plot, defaults, follow, chosen, sections, voxels }, the last made when it is asked for; null plot: there is nothing to compare. `follow` is told whenever
    *  something else is chosen. */
@@ -362,7 +381,7 @@ const comparisonOf = (function () {
       plot: h("figure", { class: "plot" }, choices, drawn.frame, legend,
         h("figcaption", null, "Down and to the left is better. Filled: on the Pareto front. Grey: least error within a time. Bars: quartiles of "
           + "the time, uncertainty of the error.")),
-      defaults: following(() => defaultsTable(scene, chosen())), chosen, follow, equal: equalSentence(scene),
+      defaults: following(() => [defaultsTable(scene, chosen()), chosen().metric === "flip" && caption(data.units.flip)]), chosen, follow, equal: equalSentence(scene),
       sections: [
         caption("All pipelines at all points of their sweeps. Bars: quartiles of the frame time; one standard uncertainty of the error, "
           + "of the reference's noise and the spread over seeds together. Filled points are on the Pareto front of all: no other point is as good in "

@@ -1,7 +1,8 @@
 "use strict";
 // Images, reference and FLIP maps, and a frame with a slider between any two of them.
 const imagesOf = (function () {
-  const { images, h, caption, folded, exposureText, shortName, pipelineName, parametersText, componentTitle, pngAddress, whenShown } = lumivox;
+  const { images, h, caption, folded, counted, exposureText, shortName, broken, pipelineName, parametersText, componentTitle, pngAddress,
+          whenShown } = lumivox;
   const ownOf = index => (images.scenes || [])[index] || { references: [], points: [] };
   const figure = (address, alt, kind, text) => h("figure", null, h("img", { class: kind, alt, src: address }), h("figcaption", null, text));
   /** Of the whole image only the composite counts, which every pipeline has. */
@@ -54,8 +55,9 @@ const imagesOf = (function () {
     if (figures.length === 0) return null;
     const reference = own.references.find(one => one.layer === layer);
     const first = reference && figure(pngAddress(reference.png), "reference: " + layer, "reference",
-                                      ["reference ", h("span", { class: "soft" }, layer)]);
-    return h("div", { class: "row", role: "group", "aria-label": "images of " + componentTitle(comparison.component) }, first, figures);
+                                      ["reference ", h("span", { class: "soft" }, broken(layer))]);
+    return h("div", { class: "row", role: "group", "aria-label": "images of " + componentTitle(comparison.component),
+                      style: "--figures:" + (figures.length + (first ? 1 : 0)) }, first, figures);
   }
 
   /** All images of one component of a scene; null without any. */
@@ -67,7 +69,7 @@ const imagesOf = (function () {
       if (!reference) return null;
       if (!references.some(one => one.title === "reference: " + layer))
         references.push({ title: "reference: " + layer, address: pngAddress(reference.png) });
-      return figure(pngAddress(reference.png), "reference: " + layer, "reference", "reference: " + layer);
+      return figure(pngAddress(reference.png), "reference: " + layer, "reference", broken("reference: " + layer));
     };
     own.points.forEach((outputs, index) => {
       const point = scene.points[index];
@@ -77,19 +79,19 @@ const imagesOf = (function () {
         if (point.default) first = shown.length;
         shown.push({ title, address: pngAddress(output.png) });
         (point.default ? strips : more).push(h("div", { class: "strip" },
-          figure(pngAddress(output.png), title, null, title),
+          figure(pngAddress(output.png), title, null, broken(title)),
           output.against.map(map => {
             maps.push({ title: "FLIP: " + title + " against " + map.reference, address: pngAddress(map.png) });
             return [referenceFigure(map.reference), figure(pngAddress(map.png), "FLIP map against " + map.reference, null,
-                                                           "FLIP against " + map.reference + ": mean " + map.flip.toFixed(3))];
+                                                           broken("FLIP against " + map.reference + ": mean " + map.flip.toFixed(3)))];
           })));
       }
     });
     if (shown.length === 0) return null;
     const choices = [...references, ...shown, ...maps];
-    return folded(componentTitle(name),
-      wipe(scene, name, choices, references.length + first, references.length > 0 ? references.length - 1 : shown.length - 1), strips,
-      more.length > 0 && folded("Other points of the sweeps", more));
+    return folded(counted(componentTitle(name), shown.length, "image"),
+      choices.length > 1 && wipe(scene, name, choices, references.length + first, references.length > 0 ? references.length - 1 : shown.length - 1), strips,
+      more.length > 0 && folded(counted("Other points of the sweeps", more.length), more));
   }
 
   function all(scene, index) {

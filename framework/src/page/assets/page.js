@@ -29,10 +29,17 @@ const lumivox = (function () {
   const caption = (...children) => h("p", { class: "caption" }, ...children);
   const list = items => h("ul", null, items.map(item => h("li", null, item)));
   const folded = (title, ...children) => h("details", null, h("summary", null, title), ...children);
+  const plural = (count, one, many) => count + " " + (count === 1 ? one : many || one + "s");
+  /** The title of something folded, with how much there is of it: "Which ones: 119 points". */
+  const counted = (title, count, one, many) => title + ": " + (one ? plural(count, one, many) : count);
+  /** A list below its title, folded where it is long. */
+  const longList = (title, items, one, many) => items.length > 10 ? folded(counted(title, items.length, one, many), list(items))
+    : [h("p", null, title + ":"), list(items)];
   /** A section that opens when a link leads to it. */
   const section = (id, title, ...children) => h("details", { class: "section", id }, h("summary", null, h("h3", null, title)), ...children);
-  /** A list to choose from, with its label. `choices`: texts by value. */
+  /** A list to choose from, with its label; null: there is nothing to choose. `choices`: texts by value. */
   function chooser(label, kind, choices, chosen, changed) {
+    if (Object.keys(choices).length < 2) return null;
     const select = h("select", { "data-choose": kind }, Object.entries(choices).map(([value, title]) =>
       h("option", { value, selected: value === chosen }, title)));
     select.addEventListener("change", () => changed(select.value));
@@ -61,6 +68,7 @@ const lumivox = (function () {
     });
     const chosen = { pipeline: "", points: "all" };
     const heads = columns.map((column, index) => {
+      if (rows.length < 2) return h("th", { class: column.kind, scope: "col" }, column.title);
       const button = h("button", { type: "button", title: "sort by this column" }, column.title);
       const head = h("th", { class: column.kind, scope: "col", "aria-sort": "none" }, button);
       button.addEventListener("click", () => {
@@ -145,8 +153,9 @@ const lumivox = (function () {
   /** Of { value, uncertainty }. */
   const measured = (one, text) => !one || !isNumber(one.value) ? "-"
     : [text ? text(one.value) : sure(one.value, one.uncertainty), " ", soft("± " + oneDigit(one.uncertainty))];
-  /** Of { median, lower_quartile, upper_quartile, repeats }. */
-  const quartiles = time => !time || time.repeats === 0 ? "-"
+  /** Of { median, lower_quartile, upper_quartile, repeats }; two frames or one have no quartiles. */
+  const hasQuartiles = time => time.repeats >= 3;
+  const quartiles = time => !time || time.repeats === 0 ? "-" : !hasQuartiles(time) ? milliseconds(time.median)
     : [milliseconds(time.median), " ", soft("[" + milliseconds(time.lower_quartile) + ", " + milliseconds(time.upper_quartile) + "]")];
   const plain = one => !one || !isNumber(one.value) ? "-" : sure(one.value, one.uncertainty) + " ± " + oneDigit(one.uncertainty);
 
@@ -178,15 +187,13 @@ const lumivox = (function () {
     const index = pipelines.indexOf(pipeline), { lines } = theme();
     return { colour: lines[index % lines.length], shape: shapes[index % shapes.length], index };
   }
-  // The shapes of the charts, for keys outside of them; within a square of 14.
-  const outlines = { circle: "M7 2a5 5 0 1 0 .01 0z", triangle: "M7 2l5.5 9.5h-11z", rect: "M2.5 2.5h9v9h-9z", rectRot: "M7 1l6 6-6 6-6-6z",
-                     star: "M6 1h2v5h5v2h-5v5h-2v-5h-5v-2h5z" };
+  // A key outside of the charts.
   function swatch(pipeline) {
     const { shape, index } = style(pipeline);
     const [drawing, path] = ["svg", "path"].map(tag => document.createElementNS("http://www.w3.org/2000/svg", tag));
     for (const [name, value] of Object.entries({ class: "swatch line-" + index % colours.light.length, viewBox: "0 0 14 14", "aria-hidden": "true" }))
       drawing.setAttribute(name, value);
-    path.setAttribute("d", outlines[shape]);
+    path.setAttribute("d", plots.outlines[shape]);
     drawing.append(path);
     return drawing;
   }
@@ -199,8 +206,18 @@ const lumivox = (function () {
   function chart(make, attributes, label) {
     const canvas = h("canvas", { role: "img", tabindex: 0, "aria-label": label + ". Arrow keys move from point to point.", ...attributes });
     const told = h("p", { class: "told", "aria-live": "polite" });
+    const save = h("a", { class: "save", download: "lumivox_" + label.toLowerCase().replace(/[^a-z0-9]+/g, "_") + ".svg" }, "Save as SVG");
     let drawn = null, at = -1;
+    /** The plot as a file for a paper, which is white. */
+    function onPaper(make) {
+      const before = printing;
+      printing = true;
+      try { return plots.svgOf(make()); } finally { printing = before; }
+    }
     const draw = () => {
+      const svg = onPaper(make);
+      if (svg !== null) save.setAttribute("href", "data:image/svg+xml;charset=utf-8," + encodeURIComponent(svg));
+      save.hidden = svg === null;
       const { ink, grid } = theme();
       Chart.defaults.color = ink;
       Chart.defaults.borderColor = grid;
@@ -223,7 +240,7 @@ const lumivox = (function () {
     });
     drawings.push(draw);
     redrawn.push(redraw);
-    return { frame: [h("div", { class: "chart" }, canvas), told], redraw };
+    return { frame: [h("div", { class: "chart" }, canvas), told, save], redraw };
   }
   const pngAddress = base64 => "data:image/png;base64," + base64;
   /** Something that is done when the page is shown. */
@@ -255,7 +272,7 @@ const lumivox = (function () {
     goToAddress();
   }
 
-  return { data, images, h, caption, list, folded, section, chooser, table, sortedBy, isNumber, significant, number, oneDigit, milliseconds,
-           percent, bytes, exposureText, thousands, measured, quartiles, plain, soft, shortName, broken, pipelineName, words, parametersText, outputName,
-           componentTitle, listed, style, theme, swatch, chart, whenShown, pngAddress, show };
+  return { data, images, h, caption, list, longList, folded, plural, counted, section, chooser, table, sortedBy, isNumber, significant, number,
+           oneDigit, milliseconds, percent, bytes, exposureText, thousands, measured, quartiles, hasQuartiles, plain, soft, shortName, broken, pipelineName, words,
+           parametersText, outputName, componentTitle, listed, style, theme, swatch, chart, whenShown, pngAddress, show };
 })();

@@ -2,15 +2,14 @@
 // The page of a report: of each scene first one screen that tells how wrong, how fast, what breaks and what was needed, then the
 // sections with every number.
 (function () {
-  const { data, images, h, caption, list, folded, section, table, sortedBy, number, milliseconds, percent, bytes, exposureText, thousands,
-          measured, quartiles, soft, shortName, broken, pipelineName, words, parametersText, outputName, listed, swatch, show } = lumivox;
+  const { data, images, h, caption, list, longList, folded, plural, counted, section, table, sortedBy, number, milliseconds, percent, bytes,
+          exposureText, thousands, measured, quartiles, soft, shortName, broken, pipelineName, words, parametersText, outputName, listed, swatch, show } = lumivox;
   const sceneTitle = scene => scene.name || scene.file;
   const timesOf = time => time && time.repeats > 0;
   const good = text => h("span", { class: "good" }, text);
   const bad = text => h("span", { class: "bad" }, text);
   const columns = (...titles) => titles.map(title => typeof title === "string" ? { title }
     : { title: title[0], kind: title[1], hidden: title[2] === "hidden" });
-  const plural = (count, one, many) => count + " " + (count === 1 ? one : many || one + "s");
   const named = file => [swatch(file), pipelineName(file)];
   const rowOf = (point, cells) => ({ kind: point.default ? "default" : "", pipeline: point.pipeline, isDefault: point.default, cells });
 
@@ -57,13 +56,16 @@
       .map(one => ({ name: shortName(one.pipeline), share: one.first_frame_saves.ms / one.first_frame_saves.of_ms }))
       .sort((a, b) => b.share - a.share);
     const differing = own.filter(one => !one.same_image);
+    const standing = own.filter(one => one.standing_saves.told === "saved")
+      .map(one => ({ name: shortName(one.pipeline), share: one.standing_saves.ms / one.standing_saves.of_ms })).sort((a, b) => b.share - a.share)[0];
     return h("p", null, h("b", null, "What was needed: "),
       `${sum("passes_kept")} of ${sum("passes_total")} passes of ${plural(own.length, "pipeline")}; leaving out the rest `,
       savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})`
         : timed > 0 ? "saves no time that could be measured" : "saves a time that was not measured",
       ` and ${bytes(Math.max(0, sum("bytes_keep_everything") - sum("bytes")))} of memory, and `,
       differing.length === 0 ? "changes no image by a single bit."
-                             : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."));
+                             : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."),
+      standing && ` While the camera moves, what stands still saves up to ${percent(standing.share)} of a first frame (${standing.name}).`);
   }
 
   /** Number, camera, size and reference, in a line. */
@@ -232,7 +234,7 @@
         return [pipelineName(file), record.passes_kept + " of " + record.passes_total,
                 record.variants.needed + " / " + record.variants.compiled + " / " + record.variants.possible,
                 bytes(Math.max(0, record.bytes_keep_everything - record.bytes)) + " of " + bytes(record.bytes_keep_everything),
-                savedText(record.first_frame_saves), savedText(record.later_frames_save), sameImage(record)];
+                savedText(record.first_frame_saves), savedText(record.standing_saves), sameImage(record)];
       const unsuited = scene.unsuited.find(one => one.pipeline === file);
       const failed = scene.points.find(point => point.pipeline === file && point.failure);
       const why = unsuited ? "not run: " + unsuited.why : failed ? bad("failed: " + failed.failure) : soft("not measured");
@@ -243,10 +245,11 @@
   function needed(scene) {
     return [
       caption("Each pipeline as it runs on the scene, beside the same with everything kept, timed alternately at the default parameters. "
-        + "Passes kept of all that the text has; shader variants needed / compiled / possible; memory and time that leaving out saves. A "
-        + "later frame follows another while the camera moves, and runs only what changed. Leaving out may change the cost, never the "
-        + "image: both are compared bit for bit."),
-      table(columns("Pipeline", "Passes", "Variants", "Memory left out", "First frame saves", "Later frames save", ["Same image, bit for bit", "wide"]),
+        + "Passes kept of all that the text has; shader variants needed / compiled / possible; memory that leaving out saves. Leaving out saves "
+        + "time: a first frame against one with everything kept. Standing still saves time: a frame that follows another while the camera "
+        + "moves, and runs only what changed, against a first frame with the same left out. Leaving out may change the cost, never the image: "
+        + "both are compared bit for bit."),
+      table(columns("Pipeline", "Passes", "Variants", "Memory left out", "Leaving out saves, of a first frame", "Standing still saves, of a first frame", ["Same image, bit for bit", "wide"]),
             neededRows(scene)),
       scene.left_out_prunings.length > 0 && h("p", null, "There was no time to measure this for: "
         + scene.left_out_prunings.map(shortName).join(", ") + "."),
@@ -271,9 +274,9 @@
     });
     const notes = scene.points.filter(point => point.default).flatMap(point => point.notes.map(note => shortName(point.pipeline) + ", " + note));
     return [
-      items.length > 0 ? list(items)
+      items.length > 0 ? longList("What was found", items, "finding")
                        : h("p", null, "Every output of every pass was scanned for NaN, Inf and negative values: none was found."),
-      notes.length > 0 && [h("p", null, "What passes tell of themselves:"), list(notes)]];
+      notes.length > 0 && longList("What passes tell of themselves", notes, "note")];
   }
 
   const commands = scene => table(columns("Pipeline", ["All parameters", "wide"], ["Command that repeats the point", "wide"]),
@@ -327,7 +330,7 @@
       });
     });
     return section("summary", "All scenes and points",
-      caption("FLIP, RMSE and mean ratio of the whole image against full transport. Bold rows are the default parameters."),
+      caption("FLIP, RMSE and mean ratio of the whole image against full transport. " + data.units.flip + " Bold rows are the default parameters."),
       table(columns("Scene", "Pipeline", "Parameters", ["Frame, ms", "number"], ["FLIP", "number"], ["RMSE", "number"], ["Mean ratio", "number"],
                     "Front", "Health"), rows));
   }
@@ -338,7 +341,7 @@
     if (data.peak_rates.length === 0)
       return h("p", null, "What this device can do at most is not known: ", h("code", null, "lumivox device"),
                " measures it, once, and the next report says how far each pass is from it.");
-    return folded("What this device can do at most",
+    return folded(counted("What this device can do at most", data.peak_rates.length, "rate"),
       table(columns("What", ["At most", "number"], ["Quartiles", "number"], "Unit", "Measured"),
             data.peak_rates.map(one => [words(one.name), sortedBy(one.median, thousands(one.median)),
                                         thousands(one.lower_quartile) + " .. " + thousands(one.upper_quartile), one.unit, one.created])));
@@ -356,8 +359,7 @@
         ...data.pipelines.map(pipeline => ["pipeline", pipeline.name, pipeline.file, code(pipeline.hash)]),
         ...data.techniques.flatMap(technique => [["technique", broken(technique.name), technique.paper, code(technique.library_hash)],
                                                  ["shaders", broken(technique.name), "", code(technique.shader_hash)]])]),
-      data.skipped.length > 0 && [h("p", null, "Technique libraries that were skipped:"),
-                                  list(data.skipped.map(one => one.library + ": " + one.reason))],
+      data.skipped.length > 0 && longList("Technique libraries that were skipped", data.skipped.map(one => one.library + ": " + one.reason)),
       data.command && [h("p", null, "This page was made by"), h("pre", null, data.command)]);
   }
 

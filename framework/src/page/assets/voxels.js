@@ -1,7 +1,7 @@
 "use strict";
 // How voxelizers do: charts, the table of all records, and how times grow beside what papers say. `scaling`: exponents of each.
 const voxelSection = (function () {
-  const { h, caption, list, table, sortedBy, number, percent, bytes, quartiles, shortName, style, chart } = lumivox;
+  const { h, caption, longList, table, sortedBy, number, percent, bytes, quartiles, shortName, style, chart } = lumivox;
 
   // Published times between the first and the last row of a table, of which only the growth is shown.
   // Mavridis & Papaioannou 2011, Table 1: 64^3 voxels, from the scene with the fewest triangles whose time is lowest (arena) to the one
@@ -74,8 +74,8 @@ const voxelSection = (function () {
           record.recall.toFixed(4), record.precision.toFixed(4), percent(record.holes.axis_share), percent(record.holes.oblique_share),
           record.fragments || "-", sortedBy(record.bytes, bytes(record.bytes)), record.fragments ? number(record.bytes_per_fragment) : "-",
           number(record.bytes_per_voxel), sortedBy(record.allocated_bytes, bytes(record.allocated_bytes))] }))),
-      missing.length > 0 && [h("p", null, "Not measured:"), list(missing.map(record =>
-        record.label + ", resolution " + record.resolution + ", " + record.triangles + " triangles: " + record.why_not))]];
+      missing.length > 0 && longList("Not measured", missing.map(record =>
+        record.label + ", resolution " + record.resolution + ", " + record.triangles + " triangles: " + record.why_not), "record")];
   }
 
   function growth(scaling) {
@@ -100,6 +100,9 @@ const voxelSection = (function () {
     const scenes = [...new Set(records.map(record => record.scene))].sort();
     const figure = (scene, kind, title) => {
       const own = records.filter(record => !record.why_not && record.scene === scene);
+      const places = new Set(configuration(own, kind).data.datasets.flatMap(set => set.data).map(point => point.x));
+      if (places.size === 1)
+        return h("p", null, title + ": not drawn, since all points have the same " + axes[kind].title + ", " + [...places][0] + ".");
       return h("figure", null, h("h4", null, title),
                chart(() => configuration(own, kind), { "data-voxels": kind, "data-scene": scene }, title + ": " + axes[kind].other + " against " + axes[kind].title).frame);
     };
