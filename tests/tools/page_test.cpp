@@ -122,9 +122,9 @@ TEST_CASE(
   INFO(page.text());
   CHECK(page.problems.empty());
 
-  // Per scene a plot of error against time, and one against recall beside another of time; a frame with two
-  // images per component. And the voxelizers.
-  CHECK(page.charts == 8);
+  // Per scene a plot of error against time, and a frame with two images per component; none against recall,
+  // which is 1 at all points. And the voxelizers.
+  CHECK(page.charts == 4);
   CHECK(page.canvases > page.charts);
   // The first screen holds a plot and a row of images; what else there is is folded.
   CHECK(page.firstChartEnds < 900.0);

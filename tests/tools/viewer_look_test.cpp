@@ -145,7 +145,7 @@ TEST_CASE("the window judges by FLIP first, and says in words which number there
         Approx(std::stod(rowOf(lit, "judge", "whole image flip"))).epsilon(1e-3));
   CHECK(std::stod(rowOf(lit, "judge", "whole image of nothing")) < 1.0);
   CHECK(rowOf(dark, "judge", "whole image mean ratio") == "none: the reference is black");
-  CHECK(!contains(dark.dump(), "nan"));
+  CHECK(!contains(dark.at("panels").at("judge").dump(), "nan"));
 }
 
 TEST_CASE("an error map has a legend in its own colours, also beside pictures in false colour") {
@@ -186,7 +186,7 @@ TEST_CASE("pictures side by side take the whole width where that makes them larg
   const std::optional<float> three = heightAbovePanels({960, 600, 420, 50}, 3.0f);
   REQUIRE(three);
   CHECK(*three == Approx(0.6f * 600.0f));  // at most
-  CHECK(heightAbovePanels({960, 1000, 420, 50}, 3.0f) == 370.0f);
+  CHECK(heightAbovePanels({960, 1000, 420, 50}, 3.0f).value_or(0.0f) == Approx(370.0f));
   CHECK(!heightAbovePanels({960, 600, 420, 50}, 1.0f));
   CHECK(!heightAbovePanels({1920, 600, 420, 50}, 3.0f));
 }

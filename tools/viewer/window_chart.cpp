@@ -45,9 +45,12 @@ void Window::State::drawChart(const Row& row, const ImVec2& corner, float width)
     return ImVec2(low.x + horizontal.at(x) * (high.x - low.x), high.y - vertical.at(y) * height);
   };
   ImDrawList* const list = ImGui::GetWindowDrawList();
+  float lowest = high.y + line;  // above which no number stands beside the chart yet
   for (const double number : errors) {
     const float y = placeOf(horizontal.low, number).y;
     list->AddLine(ImVec2(low.x, y), ImVec2(high.x, y), kGrid);
+    if (y + 0.5f * line > lowest) continue;
+    lowest = y - 0.5f * line;
     const std::string word = written(number);
     list->AddText(ImVec2(low.x - gap - ImGui::CalcTextSize(word.c_str()).x, y - 0.5f * line), kText,
                   word.c_str());
