@@ -277,7 +277,7 @@ TEST_CASE("of two reports at once on one page the first to end takes no point fr
   // It adds its own points to its store, and none of the other's.
   CHECK(runsIn(place.file("results.sqlite")) == 4);
   REQUIRE(std::filesystem::exists(checkpoint));
-  CHECK(contains(unwrapped(other.errors), "page.unfinished.sqlite: stays, process "));
+  CHECK(contains(unwrapped(other.errors), "page.unfinished.sqlite: stays, it keeps the points of process "));
   const std::size_t before = ResultsStore(checkpoint, ResultsStore::Mode::read).count().untimed;
   CHECK(before == 3);
   slow.signalAfter(std::chrono::milliseconds(0), SIGKILL);

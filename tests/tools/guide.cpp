@@ -133,7 +133,7 @@ const std::vector<Reduction>& reductions() {
        "$2 --pipeline scenes/pipelines/direct_lighting.pipeline --pipeline "
        "scenes/pipelines/reflective_shadow_maps.pipeline"},
       {"\\btune ", "tune --evaluations 3 "},
-      {"\\breproduce (004-\\S+)", "reproduce --scale 0.1 --repeats 1 $1"},
+      {"\\breproduce (gomes2015-\\S+)", "reproduce --scale 0.1 --repeats 1 $1"},
       {"--resolution 64,128,256", "--resolution 8,16 --repeats 1"},
       // Root has no sandbox; the project's own image stays.
       {"chromium --headless (.*)=docs/images/", "chromium --headless --no-sandbox --disable-gpu $1=out/"},
