@@ -503,7 +503,7 @@ TEST_CASE(
   // Somebody betters a figure by hand.
   const std::string honest = readFile(directory.path() / "techniques/one/README.md");
   std::string flattering = honest;
-  flattering.replace(flattering.find("-->1 : ") + 7, 1, "9");
+  flattering.replace(flattering.find(" = 1 : ") + 7, 1, "9");
   directory.write("techniques/one/README.md", flattering);
   const auto flattered = inProject("--cards --check");
   CHECK(flattered.exitCode == 1);
