@@ -566,8 +566,7 @@ std::vector<const PublishedSetUp*> PublishedResult::setUps() const {
 std::string citedName(const PublishedResult& result) {
   const std::size_t dash = result.id.find_first_not_of("0123456789");
   if (dash == 0 || dash == std::string::npos || result.id[dash] != '-') return result.id;
-  // "Gomes 2015 (thesis)", "Lensing and Broll 2013", "Slides on Thiedemann et al. 2011", "Dong, Kautz and
-  // Seidel 2007".
+  // "Gomes 2015 (thesis)", "Lensing and Broll 2013", "Slides on Thiedemann et al. 2011".
   static const std::regex pattern(R"((?:^|\s)([^\s,]+)(?:,[^0-9]*| and [^0-9]*| et al\.|) (\d{4})\b)");
   std::smatch found;
   if (!std::regex_search(result.paper, found, pattern)) return result.id;
