@@ -16,7 +16,8 @@ inline bool canDrawPages() {
   return std::system("node --version > /dev/null 2>&1") == 0;
 }
 
-/// Members: problems, text, html, tables (of rows of cells), links, svgs (plots to save), charts, controls, images, headings.
+/// Members: problems, text, html, tables (of rows of cells), links, svgs (plots to save), charts, controls,
+/// images, headings.
 inline nlohmann::json drawnPage(const std::filesystem::path& page) {
   const CommandResult drawn = runCommand(
       "node '" + (sourceDirectory() / "tests/support/page_dom.js").string() + "' '" + page.string() + "'");

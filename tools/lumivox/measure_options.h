@@ -38,7 +38,8 @@ void refuseFrameTimeAsBudget(CLI::App& app);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 
-std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]", "1.2", "-" when nothing was timed
+std::string quartilesText(
+    const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]", "1.2", "-" when nothing was timed
 /// "cones=6 resolution=64"
 std::string parametersText(const std::map<std::string, std::string>& parameters);
 /// So many columns have room for each output and all parameters; tables of fewer have one line a point.

@@ -75,9 +75,9 @@ void addSweepCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "sweep", "measures every point of the pipelines' sweeps that is not in the results store yet");
   auto all = std::make_shared<SweepCommand>();
-  all->measure.addTo(*command,
-                     "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)",
-                     "the scenes' texts or names, and texts of sweeps that name scenes and pipelines themselves");
+  all->measure.addTo(
+      *command, "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)",
+      "the scenes' texts or names, and texts of sweeps that name scenes and pipelines themselves");
   command->add_flag("--plan", all->plan, "only list the missing points");
   command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
   auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");

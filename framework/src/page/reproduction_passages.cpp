@@ -123,10 +123,9 @@ std::string claim(const ReproducedResult& result, const std::string& wanted) {
 }
 
 std::string passage(const Request& request, const std::vector<ReproducedResult>& results) {
-  const ReproducedResult& result =
-      found(results, "result", request.id, [&](const ReproducedResult& one) {
-        return one.published.id == request.id ? one.published.id : citedName(one.published);
-      });
+  const ReproducedResult& result = found(results, "result", request.id, [&](const ReproducedResult& one) {
+    return one.published.id == request.id ? one.published.id : citedName(one.published);
+  });
   if (request.kind == "table") {
     requireNames(request, 0, 0, "table ID");
     return table(result);

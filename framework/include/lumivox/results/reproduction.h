@@ -117,8 +117,8 @@ struct PublishedResult {
   std::vector<const PublishedSetUp*> setUps() const;
 };
 
-/// First author and year of its paper in place of the paper's number: "gomes2015-table-3" for "004-table-3". The
-/// id itself where it begins with no number or the paper names no author and year.
+/// First author and year of its paper in place of the paper's number: "gomes2015-table-3" for "004-table-3".
+/// The id itself where it begins with no number or the paper names no author and year.
 std::string citedName(const PublishedResult& result);
 
 /// Tables of the grammar, for describe and the reference.
