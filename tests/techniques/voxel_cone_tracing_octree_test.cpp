@@ -394,36 +394,6 @@ TEST_CASE("narrow cones all around a single lit voxel see its radiance times its
   }
 }
 
-TEST_CASE("as published, bricks are read by the hardware's filter, and cones see what they see by hand") {
-  // Bricks of their own voxels are always interpolated by hand; filters know 256 places between two texels.
-  const glm::ivec3 size(16);
-  const VoxelFragments list =
-      listOf(fragmentsWhere(size,
-                            [](const glm::ivec3& at) {
-                              const int sum = at.x + 2 * at.y + 3 * at.z;
-                              return sum % 3 == 0 ? glm::vec4(0.1f + 0.1f * (sum % 7), 0.5f, 0.25f, 0.125f)
-                                                  : glm::vec4(0.0f);
-                            }),
-             size);
-  const RadianceOctree own = filteredOctree(leavesOf(list)),
-                       published = filteredOctree(leavesOf(list, "as_grid", "float", "published"));
-  GatherSettings settings;
-  settings.asPublished = true;
-  for (int i = 0; i < 12; ++i) {
-    const glm::vec3 apex(-0.8f + 0.13f * static_cast<float>(i), 0.7f - 0.11f * static_cast<float>(i), 0.1f);
-    const glm::vec3 normal = glm::normalize(glm::vec3(i % 3 - 1, i % 2 == 0 ? 1 : -1, i % 5 - 2));
-    settings.lookUp = "ranks";
-    const glm::vec3 byHand = gather(emptyScene(), own, apex, normal, settings);
-    CHECK(glm::length(byHand) > 1e-3f);
-    for (const char* lookUp : {"ranks", "descent"}) {
-      settings.lookUp = lookUp;
-      const glm::vec3 sampled = gather(emptyScene(), published, apex, normal, settings);
-      CAPTURE(i, lookUp);
-      for (int c = 0; c < 3; ++c) CHECK(sampled[c] == Approx(byHand[c]).epsilon(5e-3));
-    }
-  }
-}
-
 TEST_CASE("as published, a sample between two levels is blended the other way round") {
   // One sample for each of the printed cones, of 2.8 voxels at a distance of 2: its level is log2 2.8
   // = 1.485. Opacities of voxels of the levels 1 and 2 of a uniform medium are 1 - (1-a)^2 and 1 - (1-a)^4;
