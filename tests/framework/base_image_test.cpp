@@ -368,6 +368,13 @@ TEST_CASE("a PNG holds the exposed, clipped sRGB values, and NaN is magenta") {
   REQUIRE(bytes.values == std::vector<unsigned char>{0, 118, 255, 255, 0, 255, 255, 0, 255, 255, 255, 255, 0,
                                                      0, 0, 118, 118, 118});
   REQUIRE(encodePng(image, {1.0, Tone::srgb}) == readFile(directory.path() / "p.png"));
+  CHECK(readPngAttributes(directory.path() / "p.png").empty());
+  // Texts beside the pixels change none of them.
+  const std::vector<unsigned char> pixels = readByteImage(directory.path() / "p.png").values;
+  const std::map<std::string, std::string> texts{{"lumivox.exposure_ev", "1.00"}, {"title", ""}};
+  writePng(directory.path() / "t.png", image, {1.0, Tone::srgb}, texts);
+  CHECK(readPngAttributes(directory.path() / "t.png") == texts);
+  CHECK(readByteImage(directory.path() / "t.png").values == pixels);
 
   ImageBuffer grey(1, 1, 1, 0.18f);
   writePng(directory.path() / "g.png", grey);

@@ -108,3 +108,27 @@ TEST_CASE("several images share one exposure, to which each adds what is lit in 
   meter.add(ImageBuffer(4, 4, 3, 4.0f));
   CHECK(meter.exposure() == greyAt(2.0));
 }
+
+TEST_CASE(
+    "an exposure is lowered until less than one pixel in a hundred is brighter than white, and no further") {
+  const auto with = [](double share, float first) {
+    ExposureMeter meter;
+    meter.add(withFirst(static_cast<std::size_t>(share * kSide * kSide), first, 0.02f));
+    return meter;
+  };
+  constexpr double kWhite = 10.0;
+  // Sun on a fiftieth of a dark hall; on a five hundredth, which may be white; sun that is not too bright.
+  CHECK(with(0.02, 50.0f).exposure(kWhite) == Approx(std::round(100.0 * std::log2(kWhite / 50.0)) / 100.0));
+  CHECK(with(0.02, 50.0f).exposure() > std::log2(kWhite / 50.0) + 2.0);
+  CHECK(with(0.002, 50.0f).exposure(kWhite) == with(0.002, 50.0f).exposure());
+  CHECK(with(0.02, 0.5f).exposure(kWhite) == with(0.02, 0.5f).exposure());
+  // A channel counts, not the luminance: pure red is four times as bright in its channel.
+  ImageBuffer red = withFirst(0, 0.0f, 0.02f);
+  for (std::size_t pixel = 0; pixel < 50; ++pixel) {
+    red.values()[3 * pixel] = 50.0f;
+    red.values()[3 * pixel + 1] = red.values()[3 * pixel + 2] = 0.0f;
+  }
+  ExposureMeter meter;
+  meter.add(red);
+  CHECK(meter.exposure(kWhite) == Approx(std::round(100.0 * std::log2(kWhite / 50.0)) / 100.0));
+}

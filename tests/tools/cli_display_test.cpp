@@ -58,17 +58,113 @@ TEST_CASE("an image says its exposure in the terminal, and that number gives the
   std::smatch found;
   REQUIRE(std::regex_search(automatic.errors, found, std::regex("a\\.png: .* ms, ([+-][0-9.]+) EV")));
   const std::string bytes = place.read("a.png");
-  REQUIRE(runCommand(command + " -q --exposure auto --tone srgb").exitCode == 0);
+  REQUIRE(runCommand(command + " -q --exposure auto --tone filmic").exitCode == 0);
   CHECK(place.read("a.png") == bytes);
   REQUIRE(runCommand(command + " -q --exposure " + found[1].str()).exitCode == 0);
   CHECK(place.read("a.png") == bytes);
   const double own = meanGrey(readByteImage(place.path() / "a.png"));
-  CHECK(own > 60.0);
+  // Its direct light alone, at the exposure of all light.
+  CHECK(own > 50.0);
   CHECK(own < 180.0);
   REQUIRE(runCommand(command + " -q --exposure=-3EV").exitCode == 0);
   CHECK(meanGrey(readByteImage(place.path() / "a.png")) < 0.6 * own);
-  REQUIRE(runCommand(command + " -q --tone filmic").exitCode == 0);
+  REQUIRE(runCommand(command + " -q --tone srgb").exitCode == 0);
   CHECK(place.read("a.png") != bytes);
+}
+
+TEST_CASE(
+    "whoever makes an image of a scene shows it at the same exposure, also from where nobody stood before") {
+  const Workplace place;
+  const std::string reference = "lumivox reference " + quoted(place.scene()) + " --spp 8 -o ";
+  const auto told = [](const CommandResult& result) {
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    std::smatch found;
+    REQUIRE(std::regex_search(result.errors, found, std::regex("([+-][0-9.]+) EV")));
+    return found[1].str();
+  };
+  const auto render = [&](const char* pipeline, const std::string& options) {
+    return told(runCommand("lumivox render " + quoted(place.scene()) + " " +
+                           quoted(committedPipeline(pipeline)) + " -o " + quoted(place.file("a.png")) +
+                           options));
+  };
+  const std::string ofReference = told(runCommand(reference + quoted(place.file("t.png"))));
+  CHECK(render("direct_lighting", "") == ofReference);
+  CHECK(render("screen_space", "") == ofReference);
+  CHECK(render("direct_lighting", " --subpixels 1 --resolution 24x16") == ofReference);
+  // Close to a wall that is lit, and the first exposure again: what is kept for one is not taken for the
+  // other.
+  const std::string elsewhere = " --eye 0,0,-0.4 --target 0,0,-1";
+  const std::string close = render("direct_lighting", elsewhere);
+  CHECK(close != ofReference);
+  CHECK(render("screen_space", elsewhere) == close);
+  CHECK(render("direct_lighting", "") == ofReference);
+}
+
+TEST_CASE("an image is shown at the exposure of another, which its file tells or its pixels") {
+  const Workplace place;
+  const std::string render = "lumivox -q render " + quoted(place.scene()) + " " +
+                             quoted(committedPipeline("direct_lighting")) + " --subpixels 1 -o ";
+  const auto bytesAt = [&](const std::string& exposure) {
+    const CommandResult result = runCommand(render + quoted(place.file("a.png")) + " --exposure=" + exposure);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    return place.read("a.png");
+  };
+  const std::string atOne = bytesAt("1.25");
+  REQUIRE(runCommand(render + quoted(place.file("b.png")) + " --exposure 1.25").exitCode == 0);
+  CHECK(readPngAttributes(place.path() / "b.png").at("lumivox.exposure_ev") == "1.25");
+  CHECK(bytesAt(quoted(place.file("b.png"))) == atOne);
+  REQUIRE(runCommand("lumivox -q reference " + quoted(place.scene()) + " --spp 4 --exposure 1.25 -o " +
+                     quoted(place.file("t.exr")))
+              .exitCode == 0);
+  CHECK(bytesAt(quoted(place.file("t.exr"))) == atOne);
+  // An EXR that does not tell: 0.18 / 0.72 is two stops down.
+  LayeredImage plain;
+  plain.layers[""] = ImageBuffer(4, 4, 3, 0.72f);
+  writeExr(place.path() / "plain.exr", plain);
+  CHECK(bytesAt(quoted(place.file("plain.exr"))) == bytesAt("-2"));
+  // A PNG of somebody else, one that is none, one that is not there, and the image itself.
+  writePng(place.path() / "foreign.png", plain.layers[""]);
+  place.write("text.png", "a text");
+  const auto refused = [&](const std::string& file, const std::string& why) {
+    checkRefused(runCommand(render + quoted(place.file("c.png")) + " --exposure " + quoted(place.file(file))),
+                 why);
+    CHECK_FALSE(place.has("c.png"));
+  };
+  refused("foreign.png", "foreign.png: tells no exposure");
+  refused("text.png", "text.png: is not a PNG");
+  refused("absent.png", "absent.png");
+  refused("a.jpg", "expected auto or a number of EV");
+  checkRefused(
+      runCommand(render + quoted(place.file("b.png")) + " --exposure " + quoted(place.file("b.png"))),
+      "was read for the same work");
+}
+
+TEST_CASE("edges of images to look at are smooth, and an EXR holds a frame as it is unless somebody asks") {
+  const Workplace place;
+  const std::string render = "lumivox -q render " + quoted(place.scene()) + " " +
+                             quoted(committedPipeline("direct_lighting")) + " --exposure 1 -o ";
+  const auto made = [&](const char* name, const std::string& options) {
+    const CommandResult result = runCommand(render + quoted(place.file(name)) + options);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+  };
+  made("frame.exr", "");
+  made("four.exr", " --subpixels 4");
+  made("frame.png", " --subpixels 1");
+  made("smooth.png", "");
+  const ImageBuffer frame = readExr(place.path() / "frame.exr").layers.at(""),
+                    four = readExr(place.path() / "four.exr").layers.at("");
+  const auto shown = [&](const char* name) { return readByteImage(place.path() / name).values; };
+  CHECK(shown("frame.png") == displayBytes(frame, {1.0, kShownTone}));
+  CHECK(shown("smooth.png") == displayBytes(four, {1.0, kShownTone}));
+  CHECK(shown("smooth.png") != shown("frame.png"));
+  // Smoothed and not another picture.
+  CHECK(meanOf(four) == Approx(meanOf(frame)).epsilon(0.05));
+  checkRefused(runCommand(render + quoted(place.file("x.png")) + " --subpixels 4 --accumulate 3"),
+               "--accumulate");
+  checkRefused(runCommand(render + quoted(place.file("x.png")) + " --subpixels 0"), "--subpixels");
 }
 
 TEST_CASE(
@@ -89,7 +185,9 @@ TEST_CASE(
   LayeredImage image = readExr(place.path() / "a.exr");
   CHECK_FALSE(image.layers.at("cubes").isRadiance());
   CHECK(image.layers.at("direct").isRadiance());
-  REQUIRE(runCommand(command + " --output cubes -o " + quoted(place.file("cubes.png"))).exitCode == 0);
+  REQUIRE(
+      runCommand(command + " --subpixels 1 --output cubes -o " + quoted(place.file("cubes.png"))).exitCode ==
+      0);
   const ByteImage shown = readByteImage(place.path() / "cubes.png");
   CHECK(shown.values == displayBytes(image.layers.at("cubes")));
   // What somebody asks for holds.
@@ -225,7 +323,7 @@ TEST_CASE("the frames of a sequence share an exposure, whichever of them is dark
   // The camera turns from the bulb's wall, close, to the dark corner.
   const std::string command = "lumivox render " + quoted(place.scene()) + " " +
                               quoted(committedPipeline("direct_lighting")) +
-                              " --resolution 12x8 --frames 0..7 ";
+                              " --resolution 12x8 --subpixels 1 --frames 0..7 ";
   const CommandResult result = runCommand(command + "-o " + quoted(place.file("f#.png")));
   REQUIRE(result.exitCode == 0);
   const std::regex told("f[0-7]\\.png: .* ms, ([+-][0-9.]+) EV");
@@ -236,7 +334,6 @@ TEST_CASE("the frames of a sequence share an exposure, whichever of them is dark
     exposures.insert((*one)[1].str());
   CHECK(count == 8);
   CHECK(exposures.size() == 1);
-  // Metered frames that are rendered ahead are the frames of the sequence, also where frames accumulate.
   REQUIRE(runCommand(command + "-q --accumulate 2 -o " + quoted(place.file("g#.png"))).exitCode == 0);
   for (int frame = 0; frame < 8; ++frame)
     CHECK(place.read(fmt::format("f{}.png", frame)) == place.read(fmt::format("g{}.png", frame)));
@@ -255,7 +352,7 @@ TEST_CASE(
                  "4 panels"));  // direct, final, which is the whole image, indirect_diffuse, indirect_glossy
   const ByteImage sheet = readByteImage(place.path() / "- a sheet.png");
   CHECK(sheet.width == 2 * 166 + 6);
-  CHECK(place.fileCount() == 4);  // room.obj, room.mtl, room.scene and the sheet
+  CHECK(place.fileCount() == 5);  // room.obj, room.mtl, room.scene, the sheet and the cache of references
   const CommandResult frames = runCommand(command + " --frames 0..5 --resolution 30x20");
   REQUIRE(frames.exitCode == 0);
   CHECK(contains(frames.errors, "6 panels"));

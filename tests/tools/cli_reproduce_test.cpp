@@ -434,6 +434,35 @@ TEST_CASE(
   CHECK(meanOf(172, 28) > 0.0);
 }
 
+TEST_CASE("figures that are rendered again have the light and the claims that were kept of them") {
+  // One of media, one of noise and one of voxels: a second each.
+  for (const std::string id : {"004-figure-18", "004-figure-19", "004-figure-64"}) {
+    CAPTURE(id);
+    const CommandResult result = runCommand("lumivox -q reproduce " + id + " --repeats 1 --json");
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    const Json made = Json::parse(result.output).at(0);
+    const Json all =
+        Json::parse(readFile(sourceDirectory() / "docs/benchmarks/reproductions.json")).at("results");
+    const auto kept = std::find_if(all.begin(), all.end(), [&](const Json& one) { return one["id"] == id; });
+    REQUIRE(kept != all.end());
+    REQUIRE(made["panels"].size() == (*kept)["panels"].size());
+    for (std::size_t i = 0; i < made["panels"].size(); ++i) {
+      CAPTURE(i);
+      CHECK(made["panels"][i]["panel"] == (*kept)["panels"][i]["panel"]);
+      CHECK(made["panels"][i]["mean_luminance"].get<double>() ==
+            Approx((*kept)["panels"][i]["mean_luminance"].get<double>()).epsilon(1e-3));
+    }
+    REQUIRE(made["claims"].size() == (*kept)["claims"].size());
+    for (std::size_t i = 0; i < made["claims"].size(); ++i) {
+      CHECK(made["claims"][i]["verdict"] == (*kept)["claims"][i]["verdict"]);
+      for (const char* side : {"less_value", "than_value"})
+        CHECK(made["claims"][i][side].get<double>() ==
+              Approx((*kept)["claims"][i][side].get<double>()).epsilon(0.01));
+    }
+  }
+}
+
 TEST_CASE("openness is shown as it is beside light that is exposed") {
   const TemporaryDirectory directory;
   const CommandResult result = runCommand("lumivox -q reproduce " + data("occlusion.reproduction") +

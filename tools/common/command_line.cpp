@@ -205,36 +205,6 @@ RenderOptions RunOptions::renderOptions(const Pipeline& pipeline) const {
   return options;
 }
 
-void DisplayOptions::addExposureTo(CLI::App& app) {
-  app.add_option(
-      "--exposure", exposure,
-      "of images that are displayed, in EV (radiance is multiplied by 2^EV), or auto: the log-average "
-      "luminance of what does not emit becomes 0.18 (default: auto)");
-}
-
-void DisplayOptions::addTo(CLI::App& app) {
-  addExposureTo(app);
-  addToneTo(app);
-}
-
-void DisplayOptions::addToneTo(CLI::App& app) {
-  app.add_option("--tone", tone,
-                 "tone curve of images that are displayed: linear, srgb or filmic (default: srgb)")
-      ->check(CLI::IsMember({"linear", "srgb", "filmic"}));
-}
-
-std::optional<double> DisplayOptions::given() const {
-  if (exposure == "auto") return std::nullopt;
-  char* end = nullptr;
-  const double number = std::strtod(exposure.c_str(), &end);
-  std::string unit = end;
-  unit.erase(0, unit.find_first_not_of(' '));
-  if (end == exposure.c_str() || (!unit.empty() && unit != "EV") || !(std::abs(number) <= kLargestExposure))
-    throw Error(fmt::format("--exposure '{}': expected auto or a number of EV from {} to {}, as -1.5",
-                            exposure, -kLargestExposure, kLargestExposure));
-  return number;
-}
-
 std::string inSingleQuotes(const std::string& argument) {
   std::string text = "'";
   for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "common/table.h"
-#include "lumivox/base/display.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -56,20 +55,6 @@ struct RunOptions {
   std::pair<int, int> size() const;  ///< {0, 0} when not given
   RenderOptions renderOptions(const Pipeline& pipeline) const;
 };
-
-/// How images are displayed, in every command that makes one or takes a measure that depends on it.
-struct DisplayOptions {
-  std::string exposure = "auto", tone = "srgb";
-
-  void addTo(CLI::App& app);
-  void addExposureTo(CLI::App& app);  ///< alone: of commands that only measure
-  void addToneTo(CLI::App& app);
-  std::optional<double> given() const;  ///< EV; nothing for auto. Error otherwise
-  Tone toneCurve() const { return toneNamed(tone); }
-};
-
-/// Of an EXR file: EV at which its scene is displayed.
-inline constexpr const char* kExposureAttribute = "lumivox.exposure_ev";
 
 /// A word for a shell, in single quotes. A quote within ends them, stands behind a backslash, and begins them
 /// again.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "command.h"
+#include "common/display_options.h"
 #include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -110,38 +111,13 @@ Json toJson(const LayerPair& pair, const ImageError& error) {
           {"non_finite_reference", error.nonFiniteReference}};
 }
 
-/// The exposure of all layers, and where it comes from.
-struct Shown {
-  double exposure = 0.0;
-  std::string from;
-};
-
-Shown exposureOf(const CompareCommand& command, const LayeredImage& reference,
-                 const std::vector<LayerPair>& pairs) {
+/// The exposure of all layers, and where it comes from: from the whole light where it is there.
+FoundExposure exposureOf(const CompareCommand& command, const LayeredImage& reference,
+                         const std::vector<LayerPair>& pairs) {
   if (const auto given = command.display.given()) return {*given, "--exposure"};
-  const std::string file = command.reference.string();
-  if (const auto kept = reference.attributes.find(kExposureAttribute); kept != reference.attributes.end()) {
-    DisplayOptions told;
-    told.exposure = kept->second;
-    try {
-      if (const auto exposure = told.given()) return {*exposure, "the header of " + file};
-    } catch (const Error&) {
-      logWarning("{}: its header gives the exposure as '{}', which is no number of EV; it is measured", file,
-                 kept->second);
-    }
-  }
-  // Which pixels emit is not known here. One exposure for all layers, from the whole light where it is there.
-  for (const std::string& layer : {std::string("full"), std::string(), pairs.front().second}) {
-    const auto found =
-        reference.layers.find(layer == kMainLayer && reference.layers.count(layer) == 0 ? "" : layer);
-    if (found == reference.layers.end()) continue;
-    if (const int channels = found->second.channels(); channels != 1 && channels != 3 && channels != 4)
-      continue;
-    return {displayExposure(found->second),
-            fmt::format("all pixels of the layer '{}' of {}, which does not tell what emits", shown(layer),
-                        file)};
-  }
-  return {0.0, "no layer of radiance is there"};
+  const std::string& first = pairs.front().second;
+  return command::exposureOf(command.reference, reference,
+                             first == kMainLayer && reference.layers.count(first) == 0 ? "" : first);
 }
 
 std::string text(const Measured& measured) {
@@ -171,7 +147,7 @@ int compareFiles(const CompareCommand& command) {
   Outputs().add("--sheet", command.sheet, {".png"}).check({command.image, command.reference});
   const LayeredImage image = readExr(command.image), reference = readExr(command.reference);
   const std::vector<LayerPair> pairs = pairsOf(command, image, reference);
-  const Shown display = exposureOf(command, reference, pairs);
+  const FoundExposure display = exposureOf(command, reference, pairs);
   Sheet sheet{fmt::format("{} against {} ({}, {})", command.image.filename().string(),
                           command.reference.filename().string(), exposureText(display.exposure),
                           command.display.tone),
@@ -195,7 +171,7 @@ int compareFiles(const CompareCommand& command) {
     const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
     const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
     // What is no radiance is shown as it is.
-    const bool asItIs = !(left.isRadiance() && right.isRadiance()) && !command.display.given();
+    const bool asItIs = !(left.isRadiance() && right.isRadiance()) && !command.display.isGiven();
     asTheyAre = asTheyAre || asItIs;
     const Display layerDisplay = asItIs ? Display{} : Display{display.exposure, command.display.toneCurve()};
     SeedsError compared = compareSeeds(std::span(&left, 1), right, known ? variance->second : ImageBuffer{},

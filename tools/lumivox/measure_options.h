@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command.h"
+#include "common/display_options.h"
 #include "lumivox/experiment/report.h"
 
 namespace lumivox::command {

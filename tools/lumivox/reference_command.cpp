@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "common/display_options.h"
 #include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/error.h"
@@ -42,19 +43,16 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
                                                     : renderReference(scene, command.options);
   const ImageBuffer full = reference.layers.at("full");
   const ReferenceOptions& options = command.options;
-  ExposureMeter meter;
-  if (!given)
-    meterImage(meter, scene, snapshotOf(scene, options.time, options.camera, options.width, options.height),
-               full);
-  const double exposure = given.value_or(meter.exposure());
+  const double exposure = given ? *given : viewExposure(scene, options);
   if (extension == ".png") {
-    writePng(command.output, full, {exposure, command.display.toneCurve()});
+    writePng(command.output, full, {exposure, command.display.toneCurve()},
+             {{kExposureAttribute, exposureNumber(exposure)}});
   } else {
     reference.layers[""] = full;  // what a viewer of images shows first
     reference.attributes["lumivox.command"] = global.commandLine;
     reference.attributes["lumivox.version"] = LUMIVOX_VERSION;
     // For whoever has the image without its scene, and cannot tell what emits.
-    reference.attributes[kExposureAttribute] = fmt::format("{:.2f}", exposure);
+    reference.attributes[kExposureAttribute] = exposureNumber(exposure);
     writeExr(command.output, reference);
   }
   logInformation("{}: {} x {}, {} samples per pixel, {}", command.output.string(), full.width(),

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "command.h"
+#include "common/display_options.h"
 #include "common/named_texts.h"
 #include "common/outputs.h"
 #include "lumivox/base/background_writer.h"
@@ -36,6 +37,7 @@ struct RenderCommand {
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
   int accumulate = 0;  ///< frames an image; 0: each is made alone
+  int subpixels = 0;   ///< positions in the pixel; 0: as positions() chooses
   bool keepEverything = false, health = false, checkReads = false, json = false;
 
   bool isAnimation() const { return !frames.empty(); }
@@ -44,12 +46,27 @@ struct RenderCommand {
   bool movesCamera() const { return !eye.empty() || !target.empty() || fov > 0.0; }
   /// Whether anything is made that somebody looks at.
   bool displays() const { return output.extension() == ".png" || !sheet.empty() || !video.empty(); }
+  /// Positions in the pixel that an image is the mean of. Numbers are kept as one frame makes them, unless
+  /// somebody asks; a frame that follows others has its camera where they had theirs.
+  int positions() const {
+    constexpr int kSmooth = 4;
+    if (subpixels > 0) return subpixels;
+    return output.extension() == ".exr" || accumulate > 0 ? 1 : kSmooth;
+  }
 };
 
 /// The frame that is shown at one time, after the frames that it accumulates. Findings are those of all of
 /// them.
-FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor, double time, int frame,
-                        Progress& progress) {
+FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor, const Scene& scene,
+                        int frame, Progress& progress) {
+  const double time = command.timeOf(frame);
+  if (const int positions = command.positions(); positions > 1) {
+    const auto [width, height] = command.run.size();
+    FrameResult result = experiment::renderFiltered(
+        executor, snapshotOf(scene, time, command.run.camera, width, height), positions, frame);
+    progress.advance();
+    return result;
+  }
   std::vector<std::string> health, reads, notes;
   const auto collect = [](std::vector<std::string>& all, std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -82,12 +99,6 @@ ImageBuffer requireImage(const RenderCommand& command, const FrameResult& frame)
   return main;
 }
 
-std::uint64_t bytesOf(const FrameResult& frame) {
-  std::uint64_t bytes = 0;
-  for (const auto& [name, image] : frame.outputs) bytes += image.values().size() * sizeof(float);
-  return bytes;
-}
-
 /// Some of the frames, spread over the sequence, both ends among them.
 std::set<int> spread(int first, int last, int most) {
   std::set<int> frames;
@@ -107,48 +118,28 @@ Camera cameraOf(const RenderCommand& command, const Scene& scene) {
   return camera;
 }
 
-/// What exposes an animation before its first image is written.
-class Metering {
- public:
-  static constexpr int kFrames = 5;
-  /// Frames that are rendered ahead.
-  static std::set<int> framesOf(int first, int last) {
-    return first == last ? std::set<int>{} : spread(first, last, kFrames);
-  }
-
-  void add(const RenderCommand& command, const Scene& scene, int frame, const FrameResult& result) {
-    const auto [width, height] = command.run.size();
-    meterImage(meter_, scene,
-               snapshotFrom(scene, command.timeOf(frame), cameraOf(command, scene), width, height),
-               mainImage(command, result));
-  }
-  double exposure() const { return meter_.exposure(); }
-
-  /// Kept for when its turn comes, where that costs little memory; says whether.
-  bool keep(int frame, FrameResult result) {
-    constexpr std::uint64_t kMost = std::uint64_t{256} << 20;
-    keptBytes_ += bytesOf(result);
-    return keptBytes_ <= kMost && kept_.emplace(frame, std::move(result)).second;
-  }
-  std::optional<FrameResult> take(int frame) {
-    const auto found = kept_.find(frame);
-    if (found == kept_.end()) return std::nullopt;
-    std::optional<FrameResult> result(std::move(found->second));
-    kept_.erase(found);
-    return result;
-  }
-
- private:
-  ExposureMeter meter_;
-  std::map<int, FrameResult> kept_;
-  std::uint64_t keptBytes_ = 0;
-};
+/// Every image of the run is shown at this EV: that of the view, of an animation at some of its frames.
+double exposureOf(const RenderCommand& command, Scene& scene, int first, int last) {
+  ReferenceOptions view;
+  view.camera = command.run.camera;
+  std::tie(view.width, view.height) = command.run.size();
+  constexpr int kMeteredFrames = 5;
+  std::vector<double> times;
+  for (const int frame : first == last ? std::set{first} : spread(first, last, kMeteredFrames))
+    times.push_back(command.timeOf(frame));
+  // The hash of the text does not know of a camera that was moved; without it the contents tell.
+  const ContentHash text = scene.hash;
+  if (command.movesCamera()) scene.hash = {};
+  const double exposure = viewExposure(scene, view, times);
+  scene.hash = text;
+  return exposure;
+}
 
 /// The files of a run: the image or the images, the sheet and the video.
 class Files {
  public:
-  Files(const RenderCommand& command, int first, int last)
-      : command_(command), display_{0.0, command.display.toneCurve()} {
+  Files(const RenderCommand& command, int first, int last, double exposure)
+      : command_(command), display_{exposure, command.display.toneCurve()} {
     if (!command.video.empty()) video_.emplace(command.video, command.framesPerSecond);
     constexpr int kMostPanels = 400;
     if (command.isAnimation() && !command.sheet.empty())
@@ -157,7 +148,6 @@ class Files {
         fmt::format("{}, {}", command.scene.filename().string(), command.pipeline.filename().string());
   }
 
-  void expose(double exposure) { display_.exposure = exposure; }
   const Display& display() const { return display_; }
 
   void add(int frame, FrameResult result, const std::map<std::string, std::string>& attributes) {
@@ -172,7 +162,7 @@ class Files {
   void finish() {
     if (!command_.sheet.empty()) {
       sheet_.title += fmt::format(" ({}, {})", exposureText(display_.exposure), name(display_.tone));
-      writePng(command_.sheet, contactSheet(sheet_));
+      writePng(command_.sheet, contactSheet(sheet_), {}, toldExposure());
       logInformation("{}: {} panels", command_.sheet.string(), sheet_.panels.size());
     }
     if (video_) {
@@ -184,7 +174,10 @@ class Files {
  private:
   /// Occlusion and the like, fractions, are shown as they are, unless somebody says how.
   Display displayOf(const ImageBuffer& image) const {
-    return command_.display.given() ? display_ : lumivox::displayOf(image, display_);
+    return command_.display.isGiven() ? display_ : lumivox::displayOf(image, display_);
+  }
+  std::map<std::string, std::string> toldExposure() const {
+    return {{kExposureAttribute, exposureNumber(display_.exposure)}};
   }
 
   void addToSheet(int frame, const FrameResult& result) {
@@ -213,7 +206,7 @@ class Files {
   void write(const fs::path& file, FrameResult frame, const std::map<std::string, std::string>& attributes) {
     if (file.extension() == ".png") {
       const ImageBuffer image = requireImage(command_, frame);
-      writePng(file, image, displayOf(image));
+      writePng(file, image, displayOf(image), toldExposure());
       return;
     }
     ImageBuffer main = mainImage(command_, frame);
@@ -240,8 +233,8 @@ std::string keptText(const RenderCommand& command, int frame, int last, const Di
     return "interrupted: nothing of a sheet or video is kept; from the start: " + global.commandLine;
   return fmt::format("interrupted: images up to {} are kept; to go on: --frames {}..{}{} in {}",
                      command.fileOf(frame).string(), frame + 1, last,
-                     command.displays() && !command.display.given()
-                         ? fmt::format(" --exposure {:.2f}", display.exposure)
+                     command.displays() && !command.display.isGiven()
+                         ? " --exposure=" + exposureNumber(display.exposure)
                          : "",
                      global.commandLine);
 }
@@ -282,6 +275,11 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   options.keepEverything = command.keepEverything;
   options.health = command.health;
   options.accumulate = command.accumulate > 0;
+  // What the camera does not change is made once for all positions.
+  options.interactive = command.positions() > 1;
+  if (command.subpixels > 1 && command.accumulate > 0)
+    throw Error(
+        "--subpixels and --accumulate: a frame that follows others has one position; expected one of both");
   options.checkReads = command.checkReads;
   if (!command.onlyOutput.empty()) {
     std::vector<std::string> names;
@@ -317,28 +315,15 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   Json images = Json::array(), found = Json::array();
   InterruptionNote interruption;
   interruption.say("interrupted before the first image was written");
-  Files files(command, first, last);
+  const double exposure = given ? *given : command.displays() ? exposureOf(command, scene, first, last) : 0.0;
+  Files files(command, first, last, exposure);
   BackgroundWriter writer;
-  const bool meters = command.displays() && !given;
-  const std::set<int> ahead = meters ? Metering::framesOf(first, last) : std::set<int>{};
   Progress progress("rendering",
                     static_cast<std::uint64_t>(last - first + 1) *
                         static_cast<std::uint64_t>(std::max(command.accumulate, 1)),
                     "frames");
-  Metering metering;
-  for (const int frame : ahead) {
-    FrameResult result = executor.render(command.timeOf(frame), frame);
-    metering.add(command, scene, frame, result);
-    // One that follows others is made anew when its turn comes, and counts then.
-    if (command.accumulate == 0 && metering.keep(frame, std::move(result))) progress.advance();
-  }
-  executor.invalidate();
-  executor.emptyHistories();
-  files.expose(given.value_or(metering.exposure()));
   for (int frame = first; frame <= last; ++frame) {
-    std::optional<FrameResult> kept = metering.take(frame);
-    FrameResult result =
-        kept ? std::move(*kept) : renderShown(command, executor, command.timeOf(frame), frame, progress);
+    FrameResult result = renderShown(command, executor, scene, frame, progress);
     for (const auto* list : {&result.healthFindings, &result.readsFindings}) {
       for (const std::string& finding : *list) {
         logMessage(LogLevel::quiet,
@@ -348,10 +333,6 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
       findings += list->size();
     }
     for (const std::string& note : result.notes) logInformation("{}", note);
-    if (meters && ahead.empty()) {
-      metering.add(command, scene, frame, result);
-      files.expose(metering.exposure());
-    }
     auto attributes = provenance(global, scene, pipeline, options, *device, command.timeOf(frame));
     if (command.isAnimation()) attributes["lumivox.frame"] = fmt::format("{}", frame);
     if (command.accumulate > 0) attributes["lumivox.accumulate"] = fmt::format("{}", command.accumulate);
@@ -408,6 +389,12 @@ void addRenderCommand(Commands& commands) {
                       "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");
   addFrameRate(*command, options->framesPerSecond);
   command->add_option("--output", options->onlyOutput, "only this output of the pipeline, as the main layer");
+  command
+      ->add_option(
+          "--subpixels", options->subpixels,
+          "images are means over this many positions in the pixel, so that edges are smooth, as a report "
+          "measures them (default: 4 for images to look at; 1, a frame as it is, for .exr and --accumulate)")
+      ->check(CLI::Range(1, 1 << 10));
   command->add_flag("--keep-everything", options->keepEverything, "leave nothing out");
   command->add_flag("--health", options->health,
                     "scan every output of every pass for NaN, Inf and negative values");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/command_line.h"
+#include "common/display_options.h"
 
 namespace lumivox::vdb {
 

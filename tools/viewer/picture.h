@@ -18,7 +18,7 @@ enum class ErrorMap { relative, flip, squared };
 
 struct PictureLook {
   double exposure = 0.0;  ///< EV
-  Curve curve = Curve::srgb;
+  Curve curve = Curve::filmic;
   /// Pixels that are NaN or infinite: magenta, or what is beneath; both in turn flash.
   bool marksBadPixels = true;
   std::string unit{};  ///< of the values, for the legend

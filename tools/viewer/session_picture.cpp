@@ -9,6 +9,15 @@
 #include "viewer/session.h"
 
 namespace lumivox::viewer {
+namespace {
+
+/// What is no light is not brought below white, where that is done to light.
+Curve plain(Curve curve) {
+  return curve == Curve::filmic ? Curve::srgb : curve;
+}
+
+}  // namespace
+
 void Session::compose() {
   if (lastGood_ == nullptr) return;
   const auto imageOfSide = [&](std::size_t side) {
@@ -30,8 +39,8 @@ void Session::compose() {
   }
   // Fractions are shown as they are.
   const bool fraction = !image.isRadiance() && !state_.exposure;
-  const PictureLook look{fraction ? 0.0 : exposure_, state_.curve, flicker_ < kFlickerSeconds,
-                         image.isRadiance() ? kRadianceUnit : std::string()};
+  const PictureLook look{fraction ? 0.0 : exposure_, fraction ? plain(state_.curve) : state_.curve,
+                         flicker_ < kFlickerSeconds, image.isRadiance() ? kRadianceUnit : std::string()};
   const Picture main = showsPort ? portPicture(look) : pictureOf(image, look);
   std::optional<ReferenceLayer> truth;
   if (reference_ != nullptr && !showsPort)
@@ -78,6 +87,7 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
     // Other quantities know nothing of the exposure of the picture: the largest value is white, colours that
     // are pure numbers are shown as they are, and light in another unit has an exposure of its own.
     const bool light = port.unit.find('W') != std::string::npos;
+    if (!light) look.curve = plain(look.curve);
     float largest = 0.0f;
     for (const float value : values.values())
       if (std::isfinite(value)) largest = std::max(largest, std::abs(value));

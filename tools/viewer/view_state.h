@@ -37,7 +37,7 @@ struct ViewState {
   ErrorMap errorMap = ErrorMap::relative;
   double split = 0.5;
   std::optional<double> exposure;  ///< EV; otherwise that of the picture
-  Curve curve = Curve::srgb;
+  Curve curve = Curve::filmic;
   bool keepEverything = false, timesPasses = true, countsWork = false, traces = true;
   int samples = 1024;
   std::uint64_t seed = 1;

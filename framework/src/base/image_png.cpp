@@ -163,7 +163,8 @@ std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display
   return bytes;
 }
 
-std::string encodePng(const ImageBuffer& linear, const Display& display) {
+std::string encodePng(const ImageBuffer& linear, const Display& display,
+                      const std::map<std::string, std::string>& attributes) {
   const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
   requireMemory(4 * linear.pixelCount() * kChannels, "encoding a PNG");
   const std::string data = zlibStream(filtered(displayBytes(linear, display), rowBytes), kDeflateLevel);
@@ -178,15 +179,18 @@ std::string encodePng(const ImageBuffer& linear, const Display& display) {
   constexpr char kBitDepth = 8, kTrueColour = 2, kDeflate = 0, kAdaptiveFilters = 0, kNotInterlaced = 0;
   for (const char byte : {kBitDepth, kTrueColour, kDeflate, kAdaptiveFilters, kNotInterlaced}) header += byte;
   appendChunk(png, "IHDR", header);
+  // Sec. 11.3.3.2: keyword, a byte of 0, text
+  for (const auto& [keyword, text] : attributes) appendChunk(png, "tEXt", keyword + '\0' + text);
   appendChunk(png, "IDAT", data);
   appendChunk(png, "IEND", {});
   return png;
 }
 
-void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display) {
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display,
+              const std::map<std::string, std::string>& attributes) {
   std::string bytes;
   try {
-    bytes = encodePng(linear, display);
+    bytes = encodePng(linear, display, attributes);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   }

@@ -39,16 +39,24 @@ std::uint32_t bigEndian32(Bytes bytes, std::size_t at) {
          std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
 }
 
-/// PNG specification, Sec. 5.3: chunks of length, type, data and checksum, up to IEND.
-void checkPng(Bytes bytes) {
+/// PNG specification, Sec. 5.3: chunks of length, type, data and checksum, up to IEND. Keywords and texts of
+/// tEXt (Sec. 11.3.3.2), a byte of 0 between them, are returned.
+std::map<std::string, std::string> checkPng(Bytes bytes) {
   constexpr std::size_t kSignature = 8, kChunkFrame = 12;
+  std::map<std::string, std::string> texts;
   for (std::size_t at = kSignature;;) {
     if (bytes.size() - at < kChunkFrame) refuse("the PNG is truncated");
     const std::size_t length = bigEndian32(bytes, at);
     if (length > bytes.size() - at - kChunkFrame) refuse("the PNG is truncated");
     const auto sum = crc32(0, bytes.data() + at + 4, static_cast<uInt>(length + 4));
     if (sum != bigEndian32(bytes, at + 8 + length)) refuse("a chunk of the PNG fails its checksum");
-    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return;
+    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return texts;
+    if (std::memcmp(bytes.data() + at + 4, "tEXt", 4) == 0) {
+      const std::string data(bytes.begin() + static_cast<std::ptrdiff_t>(at + 8),
+                             bytes.begin() + static_cast<std::ptrdiff_t>(at + 8 + length));
+      if (const std::size_t end = data.find('\0'); end != std::string::npos)
+        texts[data.substr(0, end)] = data.substr(end + 1);
+    }
     at += kChunkFrame + length;
   }
 }
@@ -135,6 +143,17 @@ ByteImage decode(Bytes bytes) {
 }
 
 }  // namespace
+
+std::map<std::string, std::string> readPngAttributes(const std::filesystem::path& path) {
+  const std::string file = readFile(path, kLargestImageFile);
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  try {
+    if (file.substr(0, kSignature.size()) != kSignature) refuse("is not a PNG");
+    return checkPng({reinterpret_cast<const unsigned char*>(file.data()), file.size()});
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
 
 ByteImage readByteImage(const std::filesystem::path& path) {
   return decodeByteImage(readFile(path, kLargestImageFile), path);

@@ -132,7 +132,7 @@ namespace {
 std::string displayText(const ReportOptions& options) {
   std::string text;
   if (options.exposure) text = fmt::format("exposure {}", *options.exposure);
-  if (options.tone != Tone::srgb)
+  if (options.tone != kShownTone)
     text += (text.empty() ? "tone " : ", tone ") + std::string(name(options.tone));
   return text;
 }

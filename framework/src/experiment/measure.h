@@ -33,7 +33,7 @@ class SceneReference {
   SceneReference& later(int frame);
   /// The error of an image of nothing against it: black, or 1 for ambient occlusion.
   const ImageError& errorOfNothing(const std::string& name);
-  /// EV at which the images of the scene are shown and judged: that of its full transport.
+  /// EV at which the images of the scene are shown and judged: viewExposure().
   double exposure();
   /// How images that are judged against this layer are shown: at that exposure, but for occlusion, a
   /// fraction, which is shown as it is.
@@ -85,15 +85,6 @@ class Measuring {
 
 /// The options of frames that measure a point.
 RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& point);
-
-/// The image that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
-/// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
-/// the result is the first frame's; health findings are those of the first frame that has some. At each
-/// position the image is that of the last of `frames` frames, of which the first knows nothing from before.
-/// `apart` becomes half the difference between the mean over the outer positions and that over the inner
-/// ones: what the mean over all may still be wrong by.
-FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
-                           int frameIndex = 0, int frames = 1, FrameResult* apart = nullptr);
 
 /// How many indirect bounces each output of a pipeline models, by its name; kWholeImage: the most of them.
 std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);

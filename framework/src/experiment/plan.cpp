@@ -263,7 +263,7 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
   if (options.time != 0.0) command += fmt::format(" --time {}s", options.time);
   if (options.exposure) command += fmt::format(" --exposure {}", *options.exposure);
-  if (options.tone != Tone::srgb) command += fmt::format(" --tone {}", name(options.tone));
+  if (options.tone != kShownTone) command += fmt::format(" --tone {}", name(options.tone));
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);
   return command;
 }

@@ -70,6 +70,30 @@ void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& s
   meter.add(image, seen ? emittingPixels(scene, snapshot) : std::vector<unsigned char>{});
 }
 
+double viewExposure(const Scene& scene, const ReferenceOptions& view, const std::vector<double>& times) {
+  constexpr int kPixels = 32, kSamples = 64;
+  const CameraView camera = snapshotOf(scene, view.time, view.camera, view.width, view.height).camera;
+  const double scale = std::min(1.0, static_cast<double>(kPixels) / std::max(camera.width, camera.height));
+  ReferenceOptions options;
+  options.samplesPerPixel = kSamples;
+  options.camera = view.camera;
+  options.width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
+  options.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
+  options.threads = view.threads;
+  options.useCache = view.useCache;
+  options.progress = false;
+  ExposureMeter meter;
+  for (const double time : times.empty() ? std::vector{view.time} : times) {
+    options.time = time;
+    meterImage(meter, scene, snapshotOf(scene, time, options.camera, options.width, options.height),
+               cachedReference(scene, options).layers.at("full"));
+  }
+  // The least exposed radiance that kShownTone shows as white.
+  constexpr float kBrightestGrey = 254.0f / 255.0f;
+  static const double white = FilmicCurve::inverse(double{srgbToLinear(kBrightestGrey)});
+  return meter.exposure(white);
+}
+
 }  // namespace lumivox
 
 namespace lumivox::experiment {
@@ -126,13 +150,7 @@ const ImageError& SceneReference::errorOfNothing(const std::string& name) {
 }
 
 double SceneReference::exposure() {
-  if (!exposure_) {
-    ExposureMeter meter;
-    meterImage(meter, *scene_,
-               snapshotOf(*scene_, options_.time, options_.camera, options_.width, options_.height),
-               layers_.layers.at("full"));
-    exposure_ = meter.exposure();
-  }
+  if (!exposure_) exposure_ = viewExposure(*scene_, options_);
   return *exposure_;
 }
 

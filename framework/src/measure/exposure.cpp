@@ -20,12 +20,17 @@ void ExposureMeter::add(const ImageBuffer& image, std::span<const unsigned char>
   for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
     const auto luminance = static_cast<float>(luminanceAt(image, pixel));
     if (!std::isfinite(luminance) || luminance <= 0.0f) continue;
-    (!emitting.empty() && emitting[pixel] != 0 ? shining_ : lit_).push_back(luminance);
+    Pixels& pixels = !emitting.empty() && emitting[pixel] != 0 ? shining_ : lit_;
+    pixels.luminances.push_back(luminance);
+    const float* values = image.values().data() + pixel * static_cast<std::size_t>(image.channels());
+    pixels.brightest.push_back(image.channels() < 3 ? values[0]
+                                                    : std::max({values[0], values[1], values[2]}));
   }
 }
 
-double ExposureMeter::exposure() const {
-  std::vector<float> luminances = lit_.empty() ? shining_ : lit_;
+double ExposureMeter::exposure(double white) const {
+  const Pixels& pixels = lit_.luminances.empty() ? shining_ : lit_;
+  std::vector<float> luminances = pixels.luminances;
   if (luminances.empty()) return 0.0;
   // Reinhard et al. add a small constant before the logarithm, so that black does not rule. Here what is so
   // much darker than the bright ones does not count at all: radiance has any unit, and an image that is lit
@@ -40,7 +45,12 @@ double ExposureMeter::exposure() const {
     ++count;
   }
   constexpr double kSteps = 100.0;  // per EV
-  const double exposure = std::round(kSteps * (std::log2(kKey) - sum / static_cast<double>(count))) / kSteps;
+  double exposure = std::log2(kKey) - sum / static_cast<double>(count);
+  // Half of the hundredth that may be white where somebody looks closer than the meter.
+  constexpr double kNotWhite = 0.995;
+  std::vector<float> brightest = pixels.brightest;
+  exposure = std::min(exposure, std::log2(white / quantileOf(brightest, kNotWhite)));
+  exposure = std::round(kSteps * exposure) / kSteps;
   return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
 }
 

@@ -177,7 +177,7 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
   sheet.columns = result.published.columns;
   for (const ShownPanel& panel : result.panels)
     sheet.panels.push_back({panel.name, panel.image,
-                            panel.radiance ? Display{result.exposure, Tone::srgb} : Display{}, panel.whyNot});
+                            panel.radiance ? Display{result.exposure, kShownTone} : Display{}, panel.whyNot});
   return contactSheet(sheet);
 }
 

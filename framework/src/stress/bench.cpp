@@ -219,24 +219,17 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
 void PipelineBench::State::meter(const Scene& scene, const Shot& shot, double time) {
   // Voxels are drawn as fractions.
   if (!isMetered || pipeline.outputs.empty()) return;
-  constexpr int kPixels = 32, kSamples = 16;
   const Ready made = ready(shot);
-  const double scale =
-      std::min(1.0, static_cast<double>(kPixels) / std::max(made.options.width, made.options.height));
-  ReferenceOptions options;
-  options.width = std::max(1, static_cast<int>(made.options.width * scale));
-  options.height = std::max(1, static_cast<int>(made.options.height * scale));
-  options.camera = shot.camera;
-  options.time = time;
-  options.samplesPerPixel = kSamples;
-  options.threads = 1;
-  options.progress = false;
+  ReferenceOptions view;
+  view.width = made.options.width;
+  view.height = made.options.height;
+  view.camera = shot.camera;
+  view.time = time;
+  view.threads = 1;
+  view.useCache = false;
   exposure.reset();
   try {
-    ExposureMeter light;
-    meterImage(light, scene, snapshotOf(scene, time, shot.camera, options.width, options.height),
-               renderReference(scene, options).layers.at("full"));
-    exposure = light.exposure();
+    exposure = viewExposure(scene, view);
   } catch (const Error&) {
     // What the path tracer refuses is displayed by itself.
   }

@@ -110,7 +110,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   const ImageBuffer& image = bench.shown();
   if (!request.image.empty() && !image.empty()) {
     createParentDirectories(request.image);
-    writePng(request.image, image, {bench.exposure(), Tone::srgb});
+    writePng(request.image, image, {bench.exposure(), kShownTone});
     cell.image = (request.image.parent_path().filename() / request.image.filename()).string();
   }
   return cell;

@@ -14,6 +14,10 @@ enum class Tone { linear, srgb, filmic };
 const char* name(Tone tone);              ///< "linear", "srgb", "filmic"
 Tone toneNamed(const std::string& word);  ///< Error for any other word
 
+/// That of images that are made to be looked at, unless somebody asks for another: sunlit floors and sheets
+/// keep their drawing, which `srgb` burns to white.
+inline constexpr Tone kShownTone = Tone::filmic;
+
 /// Exposures beyond this many EV up or down are refused: no radiance of single precision needs them.
 inline constexpr double kLargestExposure = 100.0;
 

@@ -69,10 +69,15 @@ std::map<std::string, std::string> readExrAttributes(const std::filesystem::path
 void writeExr(const std::filesystem::path& path, const LayeredImage& image);
 
 /// Writes a three- or one-channel linear image as an 8-bit PNG, atomically, exposed and tone-mapped. Values
-/// clip at 1; NaN is magenta.
-void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display = {});
+/// clip at 1; NaN is magenta. `attributes`: keywords (Latin letters, 1 to 79) and texts that the file
+/// carries.
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display = {},
+              const std::map<std::string, std::string>& attributes = {});
 /// The bytes of that PNG, for embedding into pages.
-std::string encodePng(const ImageBuffer& linear, const Display& display = {});
+std::string encodePng(const ImageBuffer& linear, const Display& display = {},
+                      const std::map<std::string, std::string>& attributes = {});
+/// The text attributes of a PNG (its tEXt chunks), without its pixels. Error when it is none or damaged.
+std::map<std::string, std::string> readPngAttributes(const std::filesystem::path& path);
 /// Its pixels before they are packed: red, green and blue of each, row by row from the top.
 std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display& display = {});
 

@@ -27,8 +27,8 @@ struct ReportOptions {
   std::string camera;
   double time = 0.0;               ///< s
   std::uint64_t seed = 1;          ///< the first one
-  std::optional<double> exposure;  ///< EV; otherwise that of the full reference (measure/exposure.h)
-  Tone tone = Tone::srgb;          ///< of images; measures know nothing of it
+  std::optional<double> exposure;  ///< EV; otherwise viewExposure()
+  Tone tone = kShownTone;          ///< of images; measures know nothing of it
   int subpixels = 16;              ///< images that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
@@ -99,6 +99,24 @@ ImageBuffer compositeImage(const FrameResult& frame);
 /// image of another size than the snapshot's camera every pixel counts; an empty one is passed over.
 void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& snapshot,
                 const ImageBuffer& image);
+
+/// EV at which a scene is shown through a camera, whoever makes the image: metered on a small path-traced
+/// view of its own, which is kept in the cache of references. Of `view` camera, time, size, threads and the
+/// use of the cache count; `times`: all of them share one exposure, in place of the view's time, s.
+double viewExposure(const Scene& scene, const ReferenceOptions& view, const std::vector<double>& times = {});
+
+namespace experiment {
+
+/// The image that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
+/// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
+/// the result is the first frame's; health findings are those of the first frame that has some. At each
+/// position the image is that of the last of `frames` frames, of which the first knows nothing from before.
+/// `apart` becomes half the difference between the mean over the outer positions and that over the inner
+/// ones: what the mean over all may still be wrong by.
+FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
+                           int frameIndex = 0, int frames = 1, FrameResult* apart = nullptr);
+
+}  // namespace experiment
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
 /// is rendered, for the images, the bytes and the variants; nothing is timed.

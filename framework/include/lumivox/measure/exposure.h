@@ -2,6 +2,7 @@
 // (Reinhard et al. 2002).
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,10 +23,16 @@ class ExposureMeter {
   void add(const ImageBuffer& image, std::span<const unsigned char> emitting = {});
   /// EV, in steps of 0.01, so that the number that is told repeats the image. Where everything that is not
   /// black emits, that counts; 0 where everything is black.
-  double exposure() const;
+  /// Lower where otherwise more than a few in a thousand of the pixels that count had a channel of more than
+  /// `white` once exposed, so that a dark hall with a patch of sun keeps what is drawn in the sun.
+  double exposure(double white = std::numeric_limits<double>::infinity()) const;
 
  private:
-  std::vector<float> lit_, shining_;  ///< luminances above 0
+  /// Of pixels whose luminance is above 0.
+  struct Pixels {
+    std::vector<float> luminances, brightest;  ///< `brightest`: of the channels
+  };
+  Pixels lit_, shining_;
 };
 
 /// How an image is displayed where radiance is displayed by `ofRadiance`: what is no radiance as it is,
