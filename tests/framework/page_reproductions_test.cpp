@@ -94,7 +94,7 @@ TEST_CASE("what is no radiance is shown as it is beside radiance that is exposed
   result.panels[1].radiance = false;
   result.exposure = 3.0;
   const ImageBuffer sheet = contactSheet(result);
-  CHECK(sheet.at(100, 60, 0) == 0.16f);
+  CHECK(sheet.at(100, 60, 0) == toneMapped(0.16f, kShownTone));
   for (int c = 0; c < 3; ++c) CHECK(sheet.at(206 + 100, 60, c) == 0.5f);
   const std::string text = reproductionsAsMarkdown({result});
   CHECK_THAT(text, Contains("Panel light, mean 0.02 W/(sr m²)"));
@@ -124,11 +124,11 @@ TEST_CASE("a sheet shows all panels under one exposure, side by side, each with 
   REQUIRE(sheet.height() == 16 + 6 + 2 * (100 + 16 + 12));
   const int first = 28, second = first + 128;
   for (const int x : {6, 205}) {
-    CHECK(sheet.at(x, first, 0) == 0.5f);
-    CHECK(sheet.at(x, first + 99, 2) == 0.5f);
-    CHECK(sheet.at(x + 206, first, 1) == 0.125f);
+    CHECK(sheet.at(x, first, 0) == toneMapped(0.5f, kShownTone));
+    CHECK(sheet.at(x, first + 99, 2) == toneMapped(0.5f, kShownTone));
+    CHECK(sheet.at(x + 206, first, 1) == toneMapped(0.125f, kShownTone));
     // An image of half the size fills the same place.
-    CHECK(sheet.at(x, second + 99, 0) == 0.25f);
+    CHECK(sheet.at(x, second + 99, 0) == toneMapped(0.25f, kShownTone));
   }
   CHECK(sheet.at(5, first, 0) == 1.0f);
   CHECK(ink(sheet, 6, 0, 400, 20) > 0);

@@ -168,16 +168,17 @@ TEST_CASE("the cache of references is listed and pruned") {
                                 quoted(place.file("t.exr")) + " --seed ";
   REQUIRE(run(reference + "1").exitCode == 0);
   REQUIRE(run(reference + "2").exitCode == 0);
+  // And the view that both are exposed by.
   const CommandResult list = run("cache list");
   INFO(list.output << list.errors);
   CHECK(list.exitCode == 0);
-  CHECK_THAT(list.output, Catch::Contains("2 references") && Catch::Contains("8 8") &&
+  CHECK_THAT(list.output, Catch::Contains("3 references") && Catch::Contains("8 8") &&
                               Catch::Contains("of at most 4.0 GiB"));
   CHECK_THAT(run("cache list --json").output, Catch::Contains("\"limit_bytes\": 4294967296"));
-  CHECK_THAT(run("cache prune --dry-run --all").output, Catch::Contains("would remove 2 references"));
+  CHECK_THAT(run("cache prune --dry-run --all").output, Catch::Contains("would remove 3 references"));
   CHECK_THAT(run("cache prune --limit 1GiB").output, Catch::Contains("removed 0 references"));
   CHECK_THAT(run("cache prune --limit plenty").errors, Catch::Contains("plenty"));
-  CHECK_THAT(run("cache prune --all").output, Catch::Contains("removed 2 references"));
+  CHECK_THAT(run("cache prune --all").output, Catch::Contains("removed 3 references"));
   CHECK_THAT(run("cache list").output, Catch::Contains("0 references"));
 }
 

@@ -174,7 +174,7 @@ TEST_CASE("a report shows and judges all images of a scene at one exposure, and 
               .exitCode == 0);
   CHECK(std::stod(readExrAttributes(place.path() / "t.exr").at("lumivox.exposure_ev")) == exposure);
 
-  const auto given = made("--exposure -1.5 --tone filmic");
+  const auto given = made("--exposure -1.5 --tone srgb");
   CHECK(given.at("reference").at("exposure_ev") == -1.5);
   CHECK(given.at("reference").at("exposure_from") == "--exposure");
   CHECK(images() != usual);
@@ -183,7 +183,7 @@ TEST_CASE("a report shows and judges all images of a scene at one exposure, and 
   CHECK(before.at("rmse") == after.at("rmse"));
   CHECK(before.at("flip_hdr") == after.at("flip_hdr"));
   CHECK(before.at("ssim") != after.at("ssim"));
-  CHECK(contains(given.at("points").at(0).at("command"), "--exposure -1.5 --tone filmic"));
+  CHECK(contains(given.at("points").at(0).at("command"), "--exposure -1.5 --tone srgb"));
 }
 
 TEST_CASE("a report and the store that it adds to give the same CSV, with a column for each parameter") {

@@ -88,8 +88,8 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
 TEST_CASE(
     "a report begins nothing that would end beyond its budget, says so in a line, and the same command goes on") {
   const Place place;
-  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
-  const std::vector<std::string> toPage{"--budget", "1800ms", "-o", place.file("page.html")};
+  writeSlow(place, "long", "1 2 3 4 5 6");
+  const std::vector<std::string> toPage{"--budget", "4s", "-o", place.file("page.html")};
   std::size_t before = 0, runs = 0;
   for (bool whole = false; !whole; ++runs) {
     REQUIRE(runs < 20);
@@ -101,10 +101,11 @@ TEST_CASE(
     const Json record = Json::parse(place.read("page.json")), scene = record.at("scenes").at(0);
     CHECK(record.at("complete") == true);
     const std::size_t points = scene.at("points").size(), left = scene.at("left_out_points").size();
-    CHECK(points + left == 9);
-    // Each time it goes on with what lacks, and ends in time: a point takes 1.5 s of rests.
+    CHECK(points + left == 6);
+    // Each time it goes on with what lacks, and ends in time: a point takes 1.5 s of rests, and more where
+    // the machine has other work.
     CHECK(points > before);
-    CHECK(seconds < 8.0);
+    CHECK(seconds < 12.0);
     CHECK(contains(made.output, std::to_string(before) + " of " + std::to_string(points) +
                                     " points were taken up") == (before > 0));
     CHECK(contains(unwrapped(made.output), "no time for " + std::to_string(left) + " point") == (left > 0));
