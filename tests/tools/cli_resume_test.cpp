@@ -121,12 +121,12 @@ TEST_CASE(
       place.run("report", {"long"}, {"--budget", "1ms", "-o", place.file("none.html")});
   INFO(none.errors);
   CHECK(none.exitCode == 0);
-  CHECK(contains(unwrapped(none.output), "no time for 9 points"));
+  CHECK(contains(unwrapped(none.output), "no time for 6 points"));
   CHECK(Json::parse(place.read("none.json")).at("scenes").at(0).at("points").empty());
   if (!canDrawPages()) return;
   const Json page = drawnPage(place.file("none.html"));
   CHECK(page.at("problems").empty());
-  CHECK(contains(page.at("text"), "no time for 9 points in 0.001 s"));
+  CHECK(contains(page.at("text"), "no time for 6 points in 0.001 s"));
 }
 
 TEST_CASE("a report's page is there before its last point, whole at every moment, and says what is to come") {
