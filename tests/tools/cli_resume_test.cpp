@@ -88,8 +88,8 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
 TEST_CASE(
     "a report begins nothing that would end beyond its budget, says so in a line, and the same command goes on") {
   const Place place;
-  writeSlow(place, "long", "1 2 3 4 5 6");
-  const std::vector<std::string> toPage{"--budget", "4s", "-o", place.file("page.html")};
+  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
+  const std::vector<std::string> toPage{"--budget", "2s", "-o", place.file("page.html")};
   std::size_t before = 0, runs = 0;
   for (bool whole = false; !whole; ++runs) {
     REQUIRE(runs < 20);
@@ -101,10 +101,13 @@ TEST_CASE(
     const Json record = Json::parse(place.read("page.json")), scene = record.at("scenes").at(0);
     CHECK(record.at("complete") == true);
     const std::size_t points = scene.at("points").size(), left = scene.at("left_out_points").size();
-    CHECK(points + left == 6);
-    // Each time it goes on with what lacks, and ends in time: a point takes 1.5 s of rests, and more where
-    // the machine has other work.
-    CHECK(points > before);
+    CHECK(points + left == 9);
+    // Each time it goes on with what lacks, and ends in time. On a machine with other work the first frame
+    // may be so slow that nothing seems to fit.
+    if (points == before) {
+      CHECK(contains(unwrapped(made.output), "none would have ended in time"));
+      continue;
+    }
     CHECK(seconds < 12.0);
     CHECK(contains(made.output, std::to_string(before) + " of " + std::to_string(points) +
                                     " points were taken up") == (before > 0));
@@ -121,12 +124,12 @@ TEST_CASE(
       place.run("report", {"long"}, {"--budget", "1ms", "-o", place.file("none.html")});
   INFO(none.errors);
   CHECK(none.exitCode == 0);
-  CHECK(contains(unwrapped(none.output), "no time for 6 points"));
+  CHECK(contains(unwrapped(none.output), "no time for 9 points"));
   CHECK(Json::parse(place.read("none.json")).at("scenes").at(0).at("points").empty());
   if (!canDrawPages()) return;
   const Json page = drawnPage(place.file("none.html"));
   CHECK(page.at("problems").empty());
-  CHECK(contains(page.at("text"), "no time for 6 points in 0.001 s"));
+  CHECK(contains(page.at("text"), "no time for 9 points in 0.001 s"));
 }
 
 TEST_CASE("a report's page is there before its last point, whole at every moment, and says what is to come") {
