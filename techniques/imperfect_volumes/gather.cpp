@@ -48,7 +48,7 @@ class GatherPass : public Pass {
       const gpu::TextureRef light = frame.image("indirect diffuse radiance"),
                             cut = frame.image("clipped radiance");
       if (isThere(frame, incoming, "diffuse"))
-        gather(frame, *incoming, "incoming", gather::Variant::ofLight,
+        gather(frame, incoming, gather::Variant::ofLight,
                {gather::diffuseImage(light), gather::clippedImage(cut)});
       else
         for (const gpu::TextureRef& image : {light, cut}) image->clear(glm::vec4(0.0f));
@@ -58,7 +58,7 @@ class GatherPass : public Pass {
     if (occlusion.wanted()) {
       const gpu::TextureRef open = frame.image("ambient occlusion");
       if (isThere(frame, visibility, "occlusion"))
-        gather(frame, *visibility, "visibility", gather::Variant::ofOpenness, {gather::occlusionImage(open)});
+        gather(frame, visibility, gather::Variant::ofOpenness, {gather::occlusionImage(open)});
       else
         open->clear(glm::vec4(neutralElement(Contributes::ambientOcclusion)));
       occlusion = Image{open};
@@ -72,13 +72,9 @@ class GatherPass : public Pass {
     return light.present();
   }
 
-  void gather(PassContext& frame, const ShGrid& light, const char* input, int of,
-              const shader::BindingSet& to) const {
-    const ShGrid::Level& volume = volumeOf(light, input);
-    if (!light.readFor.empty() && light.readFor != neighbours.inWords())
-      throw Error(fmt::format(
-          "'{}' holds the voxels that are read with {}, and here there are {}; expected the same, or 'cover all' where it is made",
-          input, light.readFor, neighbours.inWords()));
+  void gather(PassContext& frame, const In<ShGrid>& light, int of, const shader::BindingSet& to) const {
+    const auto [volume, unit] = volumeOf(light, neighbours.inWords());
+    const char* const input = light.name().c_str();
     const bool free = neighbours.onlyFree();
     if (free && !opacity.present()) throw Error("'blend free' reads 'opacity'; expected it to be connected");
     if (free && !attributes.present())
@@ -91,9 +87,9 @@ class GatherPass : public Pass {
     frame.dispatch(
         frame.program(gather::Variant{of},
                       neighbours.in(gather::Constants{.closure = negative == Negative::closure})),
-        {gather::gathering({.environment = frame.sceneDescription().environment, .unit = light.unit}),
+        {gather::gathering({.environment = frame.sceneDescription().environment, .unit = unit}),
          volumeBinding(volume.grid, occupied), neighbours.binding(), GBufferBinding(*gbuffer),
-         sampled(volume, gpu::Sampling::linear), gather::opacityAround(around, gpu::Sampling::nearest),
+         ShLevelBinding(volume, gpu::Sampling::linear), gather::opacityAround(around, gpu::Sampling::nearest),
          gather::normalsAround(normals, gpu::Sampling::nearest), to},
         pixels(frame));
   }

@@ -202,7 +202,7 @@ class MarchPass : public Marching {
 
   void run(PassContext& frame) override {
     checkGrids();
-    const ShGrid::Level& sent = volumeOf(*reflected, "reflected");
+    const auto [sent, sentUnit] = volumeOf(reflected);  // rays may meet any voxel
     requireSameGrid("reflected", sent.grid, walk == Walk::exact ? "bits" : "opacity", grid());
     if (readsAttributes() && !attributes.present())
       throw Error("'source surface' and further bounces read 'attributes'; expected it to be connected");
@@ -211,7 +211,7 @@ class MarchPass : public Marching {
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;
     result.readFor = from.readFor;
-    result.levels.push_back({grid(), arriving(frame, sent, reflected->unit, from, 0)});
+    result.levels.push_back({grid(), arriving(frame, sent, sentUnit, from, 0)});
     const auto& sum = result.levels.front().coefficients;
     if (feed == Feed::printed) {
       for (int bounce = 1; bounce < bounces; ++bounce)
@@ -252,7 +252,7 @@ class MarchPass : public Marching {
         bounce == 0 || feed == Feed::printed ? frame.sceneDescription().environment : glm::vec3(0.0f);
     sendRays(frame, program,
              {images(volumes), march::meanNormals(normals, gpu::Sampling::nearest),
-              sampled(sent, gpu::Sampling::nearest)},
+              ShLevelBinding(sent, gpu::Sampling::nearest)},
              {.environment = sky, .reach = kNoEnd, .reflectedUnit = unit, .bounce = bounce}, from);
     return volumes;
   }
@@ -261,7 +261,7 @@ class MarchPass : public Marching {
                     const std::array<gpu::TextureRef, 3>& passedOn) const {
     frame.dispatch(
         frame.program(feed::Variant{}, neighbours.in(feed::Constants{.feedsOwn = feed == Feed::own})),
-        {volumeBinding(grid(), occupied), neighbours.binding(), sampled(light, gpu::Sampling::linear),
+        {volumeBinding(grid(), occupied), neighbours.binding(), ShLevelBinding(light, gpu::Sampling::linear),
          feed::opacityAround(opacity->opacity, gpu::Sampling::nearest),
          feed::normalsAround(attributes->normal, gpu::Sampling::nearest),
          feed::opacity(opacity->opacity, gpu::Sampling::nearest),

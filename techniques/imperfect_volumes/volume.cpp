@@ -23,27 +23,20 @@ std::array<gpu::TextureRef, 3> coefficientVolumes(PassContext& frame, const glm:
   return {rooms[0], rooms[1], rooms[2]};
 }
 
-shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling) {
-  return {shader::SampledSlot{"red"}(level.channel(0), sampling),
-          shader::SampledSlot{"green"}(level.channel(1), sampling),
-          shader::SampledSlot{"blue"}(level.channel(2), sampling)};
-}
-
 shader::BindingSet images(const std::array<gpu::TextureRef, 3>& volumes) {
   return {shader::ImageSlot{"redImage"}(volumes[0]), shader::ImageSlot{"greenImage"}(volumes[1]),
           shader::ImageSlot{"blueImage"}(volumes[2])};
 }
 
-const ShGrid::Level& volumeOf(const ShGrid& light, const char* input) {
-  if (light.quantity != ShGrid::Quantity::radiance)
+RadianceVolume volumeOf(const In<ShGrid>& light, const std::string& voxels) {
+  const ShLight read = readShGrid(light, {.quantity = ShGrid::Quantity::radiance,
+                                          .unit = ShReading::Unit::any,
+                                          .voxels = voxels,
+                                          .remedy = "'cover all' where it is made"});
+  if (read.levels.size() != 1)
     throw Error(
-        fmt::format("input '{}' contains {}; expected the radiance in each voxel, as imperfect_volumes makes "
-                    "it",
-                    input, name(light.quantity)));
-  if (light.levels.size() != 1)
-    throw Error(
-        fmt::format("input '{}' has {} nested grids; expected one volume", input, light.levels.size()));
-  return light.levels.front();
+        fmt::format("input '{}' has {} nested grids; expected one volume", light.name(), read.levels.size()));
+  return {read.levels.front(), read.unit};
 }
 
 void requireSameGrid(const char* input, const GridPlacement& grid, const char* other,

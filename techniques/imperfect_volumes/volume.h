@@ -8,6 +8,7 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/sh_grid.h"
 #include "lumivox/toolkit/voxel_slots.h"
 
 namespace lumivox::imperfect_volumes {
@@ -21,12 +22,17 @@ std::array<gpu::TextureRef, 3> coefficientVolumes(PassContext& frame, const glm:
                                                   const char* label,
                                                   gpu::Format format = gpu::Format::rgba32f);
 
-/// The three volumes of a level under the names red, green and blue.
-shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling);
+/// The three volumes under the names redImage, greenImage and blueImage.
 shader::BindingSet images(const std::array<gpu::TextureRef, 3>& volumes);
 
-/// The single level of a volume of radiance; Error for another quantity, or several levels.
-const ShGrid::Level& volumeOf(const ShGrid& light, const char* input);
+/// A volume of radiance, and the value that the number 1 in it stands for.
+struct RadianceVolume {
+  const ShGrid::Level& level;
+  float unit;
+};
+/// The volume of an input. Error for another quantity, several levels, or where only the voxels of another
+/// reading (ShGrid::readFor) hold values than of `voxels`; empty: all of them are read.
+RadianceVolume volumeOf(const In<ShGrid>& light, const std::string& voxels = {});
 
 /// Error where a grid is not that of the others.
 void requireSameGrid(const char* input, const GridPlacement& grid, const char* other,

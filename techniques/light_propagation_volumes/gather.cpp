@@ -58,25 +58,24 @@ class GatherPass : public Pass {
       "radiance that two bands made negative, before its correction, as positive values, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    requireFlux(*light);
+    const NestedGrids grids = fluxIn(light);
     const bool filtered = asPublished || lookup == Lookup::filtered;
-    if (!filtered) requireFaces(*light, faces);
+    if (!filtered) requireFaces(grids, faces);
     diffuse = Image{frame.image("indirect diffuse radiance")};
     clipped = Image{frame.image("clipped radiance")};
     const gather::Constants constants{.filtered = filtered,
                                       .closure = negative == Negative::closure && !asPublished,
                                       .ownLobe = asPublished || lobe == Lobe::normal,
                                       .radialBlend = asPublished || seam == Seam::radial};
-    const std::size_t levels = light->levels.size();
-    forEachLevel(*light, [&](std::size_t i) {
-      const ShGrid::Level& level = light->levels[i];
+    forEachLevel(grids, [&](std::size_t i) {
+      const ShGrid::Level& level = grids[i];
       const bool known = faces.present() && i < faces->levels.size();
       const float side = longestSide(level.grid);
       frame.dispatch(frame.program(gather::Variant{}, constants),
                      {gather::parameters({.blend = blend,
                                           .offset = offset,
                                           .exponent = exponent,
-                                          .first = i + 1 == levels,
+                                          .first = i + 1 == grids.size(),
                                           .last = i == 0,
                                           .eye = frame.snapshot().camera.eye,
                                           .innerReach = kInnerReach * side,
@@ -123,7 +122,7 @@ class ReflectPass : public Pass {
   Reads readsFrom() const override { return asPublished ? Reads::camera : Reads::nothing; }
 
   void run(PassContext& frame) override {
-    requireFlux(*light);
+    const NestedGrids grids = fluxIn(light);
     const glm::ivec3& size = surfaces->grid.resolution;
     RadianceGrid result;
     result.grid = surfaces->grid;
@@ -132,34 +131,34 @@ class ReflectPass : public Pass {
     result.filledLevels = 1;
     radiance = result;
     if (asPublished)
-      reflectAsPublished(frame, result);
+      reflectAsPublished(frame, grids, result);
     else
-      reflectCrossing(frame, result);
+      reflectCrossing(frame, grids, result);
   }
 
-  void reflectAsPublished(PassContext& frame, const RadianceGrid& result) {
+  void reflectAsPublished(PassContext& frame, NestedGrids grids, const RadianceGrid& result) {
     frame.dispatch(frame.program(reflect_published::kProgram),
                    {reflect_published::parameters({.fadeDistance = 0.5f * longestSide(result.grid),
                                                    .reflectionLow = result.grid.low,
                                                    .voxelSize = result.grid.voxelSize,
                                                    .centre = frame.snapshot().camera.eye}),
-                    sampled(light->levels.front(), gpu::Sampling::linear),
+                    sampled(grids.front(), gpu::Sampling::linear),
                     reflect_published::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
                     reflect_published::radianceImage(result.radiance)},
                    result.grid.resolution);
   }
 
-  void reflectCrossing(PassContext& frame, const RadianceGrid& result) {
-    forEachLevel(*light, [&](std::size_t i) {
+  void reflectCrossing(PassContext& frame, NestedGrids grids, const RadianceGrid& result) {
+    forEachLevel(grids, [&](std::size_t i) {
       frame.dispatch(frame.program(reflect::kProgram),
                      {reflect::parameters({.blend = kBlendCells,
                                            .reflectionLow = result.grid.low,
                                            .voxelSize = result.grid.voxelSize,
-                                           .first = i + 1 == light->levels.size(),
+                                           .first = i + 1 == grids.size(),
                                            .last = i == 0,
                                            .fades = fade > 0.0f,
                                            .fadeWidth = fade}),
-                      sampled(light->levels[i], gpu::Sampling::linear),
+                      sampled(grids[i], gpu::Sampling::linear),
                       reflect::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
                       reflect::surfaceNormal(surfaces->normal, gpu::Sampling::nearest),
                       reflect::radianceImage(result.radiance)},

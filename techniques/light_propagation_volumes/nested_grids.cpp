@@ -85,8 +85,7 @@ gpu::ResourceBinding cellsBinding(const GridPlacement& grid) {
 }
 
 shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling) {
-  return {cellsBinding(level.grid),
-          sampled(Channels{level.channel(0), level.channel(1), level.channel(2)}, sampling)};
+  return {cellsBinding(level.grid), ShLevelBinding(level, sampling)};
 }
 
 shader::BindingSet images(const Channels& channels, const std::array<const char*, 3>& names) {
@@ -103,16 +102,12 @@ shader::BindingSet facesOf(const OccludedFaces::Level& faces, const ShGrid::Leve
           shader::SampledSlot{"moved"}(orUnread(faces.moved), gpu::Sampling::nearest)};
 }
 
-void requireFlux(const ShGrid& light) {
-  if (light.quantity != ShGrid::Quantity::flux || light.unit != 1.0f)
-    throw Error(fmt::format(
-        "input 'light' contains {} in units of {}; expected the flux of each cell in units of 1 W/sr, "
-        "as light_propagation_volumes.inject_rsm and propagate make it",
-        name(light.quantity), light.unit));
+NestedGrids fluxIn(const In<ShGrid>& light) {
+  return readShGrid(light, {.quantity = ShGrid::Quantity::flux}).levels;
 }
 
-void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces) {
-  for (std::size_t i = 0; i < light.levels.size(); ++i)
+void requireFaces(NestedGrids light, const In<OccludedFaces>& faces) {
+  for (std::size_t i = 0; i < light.size(); ++i)
     if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].occluded ||
         !faces->levels[i].moved)
       throw Error(fmt::format(
@@ -121,8 +116,8 @@ void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces) {
           i));
 }
 
-void requirePackedVoxels(const ShGrid& light, const In<OccludedFaces>& faces) {
-  for (std::size_t i = 0; i < light.levels.size(); ++i)
+void requirePackedVoxels(NestedGrids light, const In<OccludedFaces>& faces) {
+  for (std::size_t i = 0; i < light.size(); ++i)
     if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].packed)
       throw Error(fmt::format(
           "level {} of the light has no packed voxels, whose normals occlude as published; expected them at "

@@ -1,6 +1,7 @@
 // Common parts of all stages: where the nested grids lie, and textures of their cells.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/sh_grid.h"
 #include "occluded_faces.h"
 
 namespace lumivox::light_propagation_volumes {
@@ -43,19 +45,22 @@ shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling);
 /// volume in their place.
 shader::BindingSet facesOf(const OccludedFaces::Level& faces, const ShGrid::Level& level);
 
+/// The grids of light, finest first.
+using NestedGrids = std::span<const ShGrid::Level>;
+
 /// Calls work(i) for each level from the coarsest to the finest: what comes into a grid from outside is in
 /// the coarser one.
 template <class Work>
-void forEachLevel(const ShGrid& light, const Work& work) {
-  for (std::size_t i = light.levels.size(); i-- > 0;) work(i);
+void forEachLevel(NestedGrids light, const Work& work) {
+  for (std::size_t i = light.size(); i-- > 0;) work(i);
 }
 
-/// Refuses light that is not the flux of its cells, W/sr.
-void requireFlux(const ShGrid& light);
+/// Light that is the flux of its cells in W/sr; other light is refused, and such as is not in all cells.
+NestedGrids fluxIn(const In<ShGrid>& light);
 /// Refuses light without faces for all of its levels: without them it is not known what surfaces occlude.
-void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces);
+void requireFaces(NestedGrids light, const In<OccludedFaces>& faces);
 /// Refuses light without the packed voxels that it was injected from.
-void requirePackedVoxels(const ShGrid& light, const In<OccludedFaces>& faces);
+void requirePackedVoxels(NestedGrids light, const In<OccludedFaces>& faces);
 
 /// Each registers the passes of its file.
 void addInject(TechniqueRegistry& registry);

@@ -61,14 +61,14 @@ class PropagatePass : public Pass {
   Reads readsFrom() const override { return Reads::environment; }
 
   void run(PassContext& frame) override {
-    requireFlux(*injected);
-    if (occludesByNormals()) requirePackedVoxels(*injected, faces);
+    const NestedGrids levels = fluxIn(injected);
+    if (occludesByNormals()) requirePackedVoxels(levels, faces);
     // Light that comes in from outside passes the faces of the border.
-    if (!occludesByNormals() || !gridsApart()) requireFaces(*injected, faces);
+    if (!occludesByNormals() || !gridsApart()) requireFaces(levels, faces);
     ShGrid total = *injected, left = *injected;
-    forEachLevel(*injected, [&](std::size_t i) {
-      const ShGrid::Level& level = injected->levels[i];
-      const ShGrid::Level* outside = i + 1 < injected->levels.size() ? &total.levels[i + 1] : nullptr;
+    forEachLevel(levels, [&](std::size_t i) {
+      const ShGrid::Level& level = levels[i];
+      const ShGrid::Level* outside = i + 1 < levels.size() ? &total.levels[i + 1] : nullptr;
       const Channels sum = coefficientTextures(frame, level.grid.resolution, "sum of light");
       const Travelling state = start(frame, level, faces->levels[i], outside, sum);
       const int last = iterate(frame, level, faces->levels[i], state, sum);

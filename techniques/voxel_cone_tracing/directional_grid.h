@@ -45,7 +45,9 @@ struct PortTraits<voxel_cone_tracing::DirectionalRadianceGrid> {
           "rgb radiance * opacity / unit, a opacity, from all sides; or null"},
          {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4, in 10 bits each; or null"},
          {"count", "buffer", "how many; then indirect dispatches over their voxels; or null"}},
-        {{"opacity", "opacity along x, y and z", "1"}}};
+        {{"opacity", "opacity along x, y and z", "1"}},
+        {},
+        {radianceUnitCondition()}};
     for (const char* face : kFaces) {
       result.resources.push_back({face, "d3 rgba16f or rgba32f with mips",
                                   "rgb radiance * opacity / unit, a opacity, as seen from that side"});

@@ -147,7 +147,9 @@ struct PortTraits<voxel_cone_tracing::RadianceClipmap> {
     PortKind result{"RadianceClipmap",
                     "outgoing radiance and opacity of the six faces of voxels in levels around the camera",
                     {{"occupied", "buffer", "a bit for each voxel that is not empty, block after block"}},
-                    {{"opacity", "opacity along x, y and z", "1"}}};
+                    {{"opacity", "opacity along x, y and z", "1"}},
+                    {},
+                    {radianceUnitCondition()}};
     for (const char* face : kFaces) {
       result.resources.push_back(
           {face, "d3 rgba16f or rgba32f",

@@ -202,6 +202,7 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
     result.resources.push_back(
         {"radiance", "d3 rgba16f or rgba32f",
          "2 x 2 x 2 or 3 x 3 x 3 texels a brick, for each of one or six faces: rgb radiance * opacity / unit, a opacity"});
+    result.conditions = {radianceUnitCondition()};
     result.fields = {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
                      {"opacity", "opacity", "1", PortField::Role::fog}};
     for (const char* face : PortTraits<voxel_cone_tracing::DirectionalRadianceGrid>::kFaces)

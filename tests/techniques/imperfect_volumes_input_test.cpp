@@ -56,7 +56,7 @@ TEST_CASE("flux of propagation volumes in place of radiance is refused by name")
   const std::string reads = "inject.reflected";
   text.replace(text.find(reads), reads.size(), "inject.light");
   CHECK_THAT(refusal(text), Contains("pass march") && Contains("'reflected' contains flux") &&
-                                Contains("expected the radiance in each voxel"));
+                                Contains("expected radiance in W/(sr m^2)"));
 }
 
 TEST_CASE("a guard that is longer than any ray through the volume is refused with both lengths") {

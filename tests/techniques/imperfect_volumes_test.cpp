@@ -430,7 +430,8 @@ TEST_CASE("errors of imperfect volumes say what does not fit together") {
   };
   ShGrid flux = volume.reflected();
   flux.quantity = ShGrid::Quantity::flux;
-  CHECK_THROWS_WITH(march(flux, {}), Contains("'reflected' contains flux; expected the radiance"));
+  CHECK_THROWS_WITH(march(flux, {}),
+                    Contains("'reflected' contains flux in W/sr; expected radiance in W/(sr m^2)"));
   CHECK_THROWS_WITH(march(other.reflected(), {}),
                     Contains("'reflected' has 4 x 4 x 5 voxels of 1 m") && Contains("'opacity' 4 x 4 x 4"));
   CHECK_THROWS_WITH(march(volume.reflected(), {{"guard", 7}}),
@@ -470,4 +471,8 @@ TEST_CASE("errors of imperfect volumes say what does not fit together") {
   part.readFor = "'voxels eight', 'filter on' and 'shift 0.5'";
   CHECK_THROWS_WITH(gatheredAt(volume, part, {{2, 2, 2}, {0, 0, 1}}),
                     Contains("that are read with 'voxels eight'") && Contains("'voxels six'"));
+  // Rays may meet any voxel, so that a volume of which some were left out would be dark there.
+  CHECK_THROWS_WITH(march(part, {}), Contains("'reflected' holds only the voxels that are read with") &&
+                                         Contains("here all voxels are read") &&
+                                         Contains("'cover all' where it is made"));
 }

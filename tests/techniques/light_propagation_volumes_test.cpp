@@ -288,13 +288,24 @@ TEST_CASE("light without faces is refused, and told where faces come from") {
   CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("'faces'"));
 }
 
-TEST_CASE("light of another quantity than flux is refused by name, at every pass that takes it") {
+TEST_CASE("light other than the flux of all cells in W/sr is refused by name, at every pass that takes it") {
   const SceneBuilder builder = emptyScene();
   LitCells light = gridOf(4, empty(4));
-  light.quantity = ShGrid::Quantity::radiance;
+  std::string told;
+  SECTION("another quantity") {
+    light.quantity = ShGrid::Quantity::radiance;
+    told = "'light' contains radiance in W/(sr m^2); expected flux in W/sr";
+  }
+  SECTION("another unit") {
+    light.unit = 2.0f;
+    told = "'light' contains flux in units of 2 W/sr; expected units of 1 W/sr";
+  }
+  SECTION("values in some cells alone") {
+    light.readFor = "'cells six'";
+    told = "'light' holds only the voxels that are read with 'cells six', and here all voxels are read";
+  }
   Propagation step(builder.scene);
-  CHECK_THROWS_WITH(step.run(light),
-                    Catch::Contains("contains radiance") && Catch::Contains("expected the flux"));
+  CHECK_THROWS_WITH(step.run(light), Catch::Contains(told));
   for (const char* pass : {"gather", "reflect"}) {
     PassHarness harness(device(), techniques(), "light_propagation_volumes", pass, builder.scene,
                         snapshotOf(builder.scene, 0.0));
@@ -305,7 +316,7 @@ TEST_CASE("light of another quantity than flux is refused by name, at every pass
       harness.setInput("surfaces", AttributeGrid{light.levels[0].grid, volume(4, gpu::Format::rgba16f),
                                                  volume(4, gpu::Format::rgba16f), nullptr});
     harness.setInput<ShGrid>("light", light);
-    CHECK_THROWS_WITH(harness.run(), Catch::Contains("contains radiance"));
+    CHECK_THROWS_WITH(harness.run(), Catch::Contains(told));
   }
 }
 

@@ -131,6 +131,20 @@ TEST_CASE("describe knows techniques, passes, ports and parameters from the libr
   CHECK(contains(runCommand("lumivox describe gbuffer").output, "direct_lighting.gbuffer"));
 }
 
+TEST_CASE("describe says what readers of a kind must heed, and what they get otherwise") {
+  const std::string light = runCommand("lumivox describe ShGrid").output;
+  INFO(light);
+  for (const char* text :
+       {"readers heed quantity: flux", "readers heed unit: the value that the number 1 stands for",
+        "too bright or too dark by this factor", "readers heed readFor: the one reading"})
+    CHECK(contains(light, text));
+  CHECK(contains(runCommand("lumivox describe RadianceGrid").output,
+                 "readers of coarser levels heed opacity: "));
+  CHECK_FALSE(contains(runCommand("lumivox describe BinaryGrid").output, "heed"));
+  CHECK(contains(runCommand("lumivox describe --markdown").output,
+                 "`opacity` (readers of coarser levels): whether the opacity of a coarser voxel"));
+}
+
 TEST_CASE("describe --markdown is the whole reference") {
   const CommandResult result = runCommand("lumivox describe --markdown");
   CHECK(result.exitCode == 0);
@@ -228,6 +242,11 @@ TEST_CASE("describe answers in JSON with numbers in base units, and switches and
   CHECK(member(gather.at("parameters"), "reach").at("unit") == "m");
   CHECK(described("cones").at(0).at("pass") == "voxel_cone_tracing.gather");
   CHECK(described("RadianceGrid").at(0).at("exported").size() == 2);
+  const Json heeded = described("RadianceGrid").at(0).at("heeded");
+  REQUIRE(heeded.size() == 4);
+  CHECK(heeded.at(0).at("member") == "unit");
+  CHECK(heeded.at(0).at("readers") == "");
+  CHECK(heeded.at(2).at("readers") == "of coarser levels");
   CHECK(described("voxelization").at(0).at("what") == "technique");
   checkRefused(runCommand("lumivox describe conse --json"), "conse");
 }

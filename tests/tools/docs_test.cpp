@@ -1,6 +1,7 @@
 // The guides: what they quote stands in files that are built or tested, their links lead somewhere, and their
 // commands exist.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <regex>
 #include <set>
@@ -106,11 +107,11 @@ std::string sourcesOf(const std::string& language) {
       std::pair<std::set<std::string>, std::pair<std::set<std::string>, std::vector<std::string>>>>
       homes = {
           {{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
-          {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples", "templates"}}},
+          {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples", "templates", "examples"}}},
           {{"sweep"}, {{".sweep"}, {"scenes"}}},
           {{"reproduction"}, {{".reproduction"}, {"scenes"}}},
           {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests", "templates", "examples"}}},
-          {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders", "templates"}}},
+          {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders", "templates", "examples"}}},
           {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake", "templates"}}}};
   std::string all;
   for (const auto& [languages, where] : homes) {
@@ -265,6 +266,22 @@ TEST_CASE("a paper card begins with an image of the technique and its three head
     // And says what of its sources is not built.
     CHECK(contains(text, "\n## Not built\n\n- "));
   }
+}
+
+TEST_CASE("what leaving out and standing still save is told apart, each of the times beside it") {
+  const std::string figures = readFile(sourceDirectory() / "docs/benchmarks/software_rasteriser.md");
+  REQUIRE(contains(figures, "| leaving out saves | later frame, camera moving | standing still saves |"));
+  static const std::regex row(
+      "\\| ([\\d.]+) ms \\| ([\\d.]+) ms \\| (\\d+) % \\| ([\\d.]+) ms \\| (\\d+) % \\|");
+  int rows = 0;
+  for (std::sregex_iterator match(figures.begin(), figures.end(), row), end; match != end; ++match, ++rows) {
+    INFO(match->str());
+    const auto number = [&](std::size_t i) { return std::stod((*match)[i]); };
+    // As PruningRecord::savedShare() and standingShare().
+    CHECK(number(3) == std::round(100.0 * (1.0 - number(2) / number(1))));
+    CHECK(number(5) == std::round(100.0 * (1.0 - number(4) / number(2))));
+  }
+  CHECK(rows == 2);
 }
 
 TEST_CASE("no line of a guide or card is longer than 140 characters, but for what is generated") {

@@ -50,6 +50,17 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 /// One name everywhere: `files` are all of the project, `pipelines` those that are committed.
 Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,
                        const Sources& pipelines);
+/// A kind of port, and members that its readers must heed (PortKind::conditions).
+struct HeededKind {
+  std::string name;
+  std::set<std::string> members;
+};
+/// Inputs of techniques, examples and templates whose pass never looks at one of these members. `passedOn`:
+/// "file: input" of those whose output keeps the members as they are; one that is not needed is a violation.
+Violations unheededMembers(const Sources& sources, const std::vector<HeededKind>& kinds,
+                           const std::set<std::string>& passedOn);
+/// Members that the struct of their kind does not have.
+Violations unknownMembers(const Sources& sources, const std::vector<HeededKind>& kinds);
 Violations unfinished(const Sources& sources);
 Violations namespacesUsedInHeaders(const Sources& sources);
 

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "support/support.h"
+#include "lumivox/pipeline/pass.h"
+#include "support/techniques.h"
 #include "tools/house_rules.h"
 
 namespace {
@@ -73,6 +74,36 @@ std::vector<std::string> projectTechniques() {
   std::sort(names.begin(), names.end());
   return names;
 }
+
+/// Kinds of ports of the framework and of all techniques, with members that readers must heed: those that
+/// concern every reader, or all.
+std::vector<HeededKind> heededKinds(bool everyReader) {
+  std::vector<HeededKind> result;
+  std::set<std::string> known;
+  const auto add = [&](const lumivox::PortKind& kind) {
+    if (!known.insert(kind.name).second) return;
+    HeededKind heeded{kind.name, {}};
+    for (const lumivox::PortCondition& condition : kind.conditions)
+      if (!everyReader || condition.readers.empty()) heeded.members.insert(condition.member);
+    if (!heeded.members.empty()) result.push_back(heeded);
+  };
+  for (const lumivox::PortKind* kind : lumivox::FrameworkPorts::kinds()) add(*kind);
+  for (const std::string& name : projectTechniques()) {
+    const lumivox::Technique* technique = lumivox::test::techniques().technique(name);
+    REQUIRE(technique != nullptr);
+    for (const lumivox::PassEntry& entry : technique->passes) {
+      const auto pass = entry.make();
+      for (const auto* output : pass->outputs()) add(output->kind());
+    }
+  }
+  return result;
+}
+
+/// Filters: they average light in the unit of their input, which their output keeps.
+const std::set<std::string> kPassedOn{"techniques/voxel_cone_tracing/voxel_cone_tracing.cpp: radiance",
+                                      "techniques/voxel_cone_tracing/filter_directional.cpp: radiance",
+                                      "techniques/voxel_cone_tracing/octree_filter.cpp: radiance",
+                                      "techniques/voxel_cone_tracing/clipmap.cpp: radiance"};
 
 std::string joined(const Violations& violations) {
   std::string text;
@@ -193,6 +224,53 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
             .size() == 1);
 }
 
+TEST_CASE("the scanner finds inputs that are read without a look at what tells how to read them") {
+  const std::vector<HeededKind> kinds{{"Light", {"unit", "readFor"}}};
+  const SourceFile toolkit{"framework/src/toolkit/light.cpp",
+                           "Levels readLight(const In<Light>& input, int how) {\n"
+                           "  if (input->unit != 1 || !input->readFor.empty()) throw Error(\"\");\n}\n"};
+  // Another class of the file has an input of the same name, and looks at all of it.
+  const auto found = [&](const std::string& run, const std::string& more = "",
+                         const std::set<std::string>& passedOn = {}) {
+    return unheededMembers(
+        {{"techniques/glow/glow.cpp",
+          "class GlowPass : public Pass {\n  In<Light> light{this, \"light\"};\n  void run() { " + run +
+              " }\n};\nclass Other { void run() { light->unit; light->readFor; } };\n" + more},
+         toolkit},
+        kinds, passedOn);
+  };
+  CHECK(found("use(light->levels);") ==
+        Violations{"techniques/glow/glow.cpp:2: input light never looks at 'readFor' of its Light",
+                   "techniques/glow/glow.cpp:2: input light never looks at 'unit' of its Light"});
+  CHECK(found("use(light->levels, light->unit);").size() == 1);
+  CHECK(found("/* light->readFor */ say(\"light->readFor\"); use(light->unit);").size() == 1);
+  CHECK(found("use(dark->unit, light->units, light->readFor);").size() == 1);
+  CHECK_NONE(found("use(light->unit); check(light->readFor);"));
+  CHECK_NONE(found("use(readLight(light, 3));"));
+  CHECK(found("use(readLight(dark, 3));").size() == 2);
+  CHECK_NONE(found("const Light mine = *light; use(mine.unit, mine.readFor);"));
+  // Functions of the technique, one behind another; a declaration alone looks at nothing.
+  const std::string own = "float first(const Light& a, int b) { return second(b, a); }\n";
+  CHECK_NONE(
+      found("first(*light, 1);", own + "float second(int b, const Light& c) { return c.unit + c.readFor; }"));
+  CHECK(found("first(*light, 1);", own + "float second(int b, const Light& c);").size() == 2);
+  // A derived class reads the input of its base; members in a header are used in a source.
+  CHECK_NONE(found("", "class Brighter : public GlowPass { void add() { readLight(light, 1); } };"));
+  const SourceFile header{"techniques/glow/glow.h", "class Glow {\n  In<Light> light_;\n};\n"};
+  CHECK(unheededMembers({header, {"techniques/glow/glow.cpp", "use(light_->unit);"}}, kinds, {}).size() == 1);
+  CHECK_NONE(
+      unheededMembers({header, {"techniques/glow/glow.cpp", "readLight(light_, 1);"}, toolkit}, kinds, {}));
+  // Exceptions, each of which must be needed.
+  const std::set<std::string> exception{"techniques/glow/glow.cpp: light"};
+  CHECK_NONE(found("use(light->levels);", "", exception));
+  CHECK(found("readLight(light, 1);", "", exception).size() == 1);
+
+  CHECK_NONE(unknownMembers({{"a.h", "struct Light { float unit = 1.0f; std::string readFor; };"}}, kinds));
+  CHECK(unknownMembers({{"a.h", "struct Light { float units = 1.0f; /* unit = */ std::string readFor; };"}},
+                       kinds)
+            .size() == 1);
+}
+
 TEST_CASE("the parts of the framework include each other only in the order of the house") {
   CHECK_NONE(brokenIncludeOrder(projectSources()));
   for (const SourceFile& source : projectSources())
@@ -216,6 +294,13 @@ TEST_CASE("the framework names no technique and no technique includes another") 
   CHECK_NONE(namedTechniques(projectSources(), projectTechniques()));
   CHECK_NONE(namedTechniques(projectSources(), {"ambient"}));  // which a reader of the guide adds
   CHECK_NONE(dependentTechniques(projectSources(), projectTechniques()));
+}
+
+TEST_CASE("no pass reads a kind of port without a look at the members that tell every reader how") {
+  const std::vector<HeededKind> kinds = heededKinds(true);
+  REQUIRE(kinds.size() >= 5);
+  CHECK_NONE(unheededMembers(projectSources(), kinds, kPassedOn));
+  CHECK_NONE(unknownMembers(projectSources(), heededKinds(false)));
 }
 
 TEST_CASE("a technique has one name everywhere: its folder, source, shaders, test, paper card and pipeline") {

@@ -40,7 +40,11 @@ TEST_CASE("the guide to techniques leads from nothing to a technique that is mea
   CHECK(guide.has("my_lab/out/report/index.html"));
   REQUIRE(guide.says("They are what `lumivox describe ambient.gather` prints"));
   for (const char* word : {"gbuffer", "radiance", "diffuse"})
-    CHECK(contains(guide.of("lumivox describe").output, word));
+    CHECK(contains(guide.of("lumivox describe ambient.gather").output, word));
+  REQUIRE(guide.says("It lists the textures with their formats, and then what readers *heed*"));
+  for (const char* word : {"contains red (d3 rgba16f or rgba32f, for each level)", "readers heed quantity",
+                           "readers heed unit", "readers heed readFor"})
+    CHECK(contains(guide.of("lumivox describe ShGrid").output, word));
   REQUIRE(
       guide.says("`lumivox stress ambient --quick --pipeline scenes/pipelines/ambient.pipeline` runs it on"));
   const CommandResult stressed = guide.run(

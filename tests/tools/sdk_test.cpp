@@ -117,6 +117,10 @@ TEST_CASE(
   CHECK(contains(installed.mustRun(lab, "vdbexport --list grid.vdb"), "seen"));
   CHECK(contains(installed.mustRun(lab, "lumivox describe SeenVoxels --techniques build/lib/techniques"),
                  "voxels in which a surface is seen"));
+  // A third one, which reads a kind of the framework.
+  fs::copy(installed.data() / "examples/seen_light", lab, fs::copy_options::recursive);
+  installed.mustRun(lab, "cmake --build build");
+  CHECK(contains(installed.mustRun(lab, "ctest --test-dir build --output-on-failure"), "100% tests passed"));
   // Visible voxels touch the surface, and cover most of it, but not all.
   writeFileAtomically(lab / "scenes/pipelines/marked.pipeline",
                       "pipeline \"Seen voxels alone\" {\n  param resolution 32 in 8..512\n"

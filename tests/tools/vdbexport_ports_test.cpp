@@ -479,7 +479,14 @@ TEST_CASE(
     CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.coefficients_of") == name(quantity));
     CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.unit") ==
           (quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)"));
+    CHECK_FALSE((*grids.at("all.harmonics.Y00"))["lumivox.read_for"]);
   }
+  // Whoever reads the file must know that most voxels were left out.
+  made.harmonics.readFor = "'voxels six'";
+  CHECK(metaText(*exportKinds(directory.path() / "part.vdb", {{"all.harmonics"}, {0}, false}, farScene())
+                      .at("all.harmonics.Y00"),
+                 "lumivox.read_for") == "'voxels six'");
+  made.harmonics.readFor.clear();
   made.harmonics.levels.resize(1);
   auto& coefficients = made.harmonics.levels[0].coefficients;
   coefficients[1] = coefficients[2] = nullptr;

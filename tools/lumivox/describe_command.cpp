@@ -79,12 +79,21 @@ std::string passText(const std::string& technique, const PassEntry& entry) {
   return text;
 }
 
-/// "rgb radiance, W/(sr m^2)", with what the health scan and the exporter make of it.
+/// "readers", "readers of coarser levels": whom a condition concerns.
+std::string readersText(const PortCondition& condition) {
+  return condition.readers.empty() ? "readers" : "readers " + condition.readers;
+}
+
+/// "rgb radiance, W/(sr m^2)", with what readers must heed, and what the health scan and the exporter make of
+/// it.
 std::string kindText(const PortKind& kind) {
   std::string text = fmt::format("port kind {}\n  {}\n", kind.name, kind.meaning);
   for (const PortResource& one : kind.resources)
     text += fmt::format("  contains {} ({}): {}{}\n", one.name, one.shape, one.meaning,
                         one.sign == PortResource::Sign::any ? "; may be negative" : "");
+  for (const PortCondition& one : kind.conditions)
+    text += fmt::format("  {} heed {}: {}; otherwise {}\n", readersText(one), one.member, one.meaning,
+                        one.otherwise);
   for (const PortField& one : kind.fields)
     text += fmt::format("  exported as {} ({}): {}\n", one.name, one.unit, one.quantity);
   if (!kind.occupancy.empty()) text += fmt::format("  occupied: {}\n", kind.occupancy);
@@ -231,18 +240,24 @@ std::string markdownCell(std::string text) {
 std::string kindsAsMarkdown(TechniqueSet& techniques) {
   std::string text =
       "\n## Port kinds\n\nWhat flows between passes. A number below 0 is a finding of the health scan where `any sign` does not say "
-      "otherwise. A technique brings a kind of its own by the same table (`pipeline/port.h`).\n\n"
-      "| Kind | Holds | Exported | Occupied |\n|---|---|---|---|\n";
+      "otherwise. What readers heed are members that say how to read the others. A technique brings a kind of its own by the same "
+      "table (`pipeline/port.h`).\n\n"
+      "| Kind | Holds | Readers heed | Exported | Occupied |\n|---|---|---|---|---|\n";
   std::vector<std::unique_ptr<Pass>> passes;
   for (const PortKind* kind : portKinds(techniques, passes)) {
-    std::vector<std::string> holds, fields;
+    std::vector<std::string> holds, heeded, fields;
     for (const PortResource& one : kind->resources)
       holds.push_back(fmt::format("`{}` ({}{}): {}", one.name, one.shape,
                                   one.sign == PortResource::Sign::any ? ", any sign" : "", one.meaning));
+    for (const PortCondition& one : kind->conditions)
+      heeded.push_back(fmt::format("`{}`{}: {}; otherwise {}", one.member,
+                                   one.readers.empty() ? "" : " (" + readersText(one) + ")", one.meaning,
+                                   one.otherwise));
     for (const PortField& one : kind->fields)
       fields.push_back(fmt::format("`{}`: {}, {}", one.name, one.quantity, one.unit));
-    text += fmt::format("| `{}`: {} | {} | {} | {} |\n", kind->name, markdownCell(kind->meaning),
+    text += fmt::format("| `{}`: {} | {} | {} | {} | {} |\n", kind->name, markdownCell(kind->meaning),
                         markdownCell(fmt::format("{}", fmt::join(holds, "<br>"))),
+                        markdownCell(fmt::format("{}", fmt::join(heeded, "<br>"))),
                         markdownCell(fmt::format("{}", fmt::join(fields, "<br>"))),
                         markdownCell(kind->occupancy));
   }

@@ -125,16 +125,18 @@ void findInTexts(const std::vector<dsl::BlockSpecification>& blocks, const std::
 }
 
 Json kind(const PortKind& one) {
-  Json json = {{"word", one.name},
-               {"meaning", one.meaning},
-               {"contains", Json::array()},
-               {"exported", Json::array()},
-               {"occupied", one.occupancy}};
+  Json json = {{"word", one.name},        {"meaning", one.meaning},    {"contains", Json::array()},
+               {"heeded", Json::array()}, {"exported", Json::array()}, {"occupied", one.occupancy}};
   for (const PortResource& resource : one.resources)
     json["contains"].push_back({{"name", resource.name},
                                 {"shape", resource.shape},
                                 {"meaning", resource.meaning},
                                 {"may_be_negative", resource.sign == PortResource::Sign::any}});
+  for (const PortCondition& condition : one.conditions)
+    json["heeded"].push_back({{"member", condition.member},
+                              {"meaning", condition.meaning},
+                              {"otherwise", condition.otherwise},
+                              {"readers", condition.readers}});
   for (const PortField& field : one.fields)
     json["exported"].push_back({{"name", field.name}, {"unit", field.unit}, {"quantity", field.quantity}});
   return json;

@@ -1,7 +1,7 @@
-// Knowledge of a kind of port, in one place: the textures and buffers that it holds, the fields that are
-// exported of it, which voxels it occupies. The exporter, the health scan, the stress battery, the measures
-// of voxels and the documentation read this and nothing else, so that a technique may bring a kind of its
-// own:
+// Knowledge of a kind of port, in one place: the textures and buffers that it holds, the members that a
+// reader must heed, the fields that are exported of it, which voxels it occupies. The exporter, the health
+// scan, the stress battery, the measures of voxels and the documentation read this and nothing else, so that
+// a technique may bring a kind of its own:
 //
 //   struct Octree {
 //     GridPlacement grid;
@@ -58,12 +58,23 @@ struct PortField {
   Role role = Role::value;
 };
 
+/// A member that says how the textures and buffers of a value are to be read. A reader that does not look at
+/// it takes them for something else, and nothing but its light tells. tests/tools/house_test.cpp notices such
+/// a reader among the techniques.
+struct PortCondition {
+  std::string member;
+  std::string meaning;    ///< what it says
+  std::string otherwise;  ///< what a reader that ignores it gets
+  std::string readers{};  ///< whom it concerns, "of coarser levels"; empty: every reader
+};
+
 struct PortKind {
   std::string name;
   std::string meaning;
   std::vector<PortResource> resources{};
   std::vector<PortField> fields{};  ///< none: there is nothing to export
   std::string occupancy{};          ///< which voxels count as occupied; empty: it is no set of voxels
+  std::vector<PortCondition> conditions{};
   // Filled in by portKind(): two types that call themselves alike are told apart by these.
   std::string type{};
   std::size_t bytes = 0;
@@ -135,6 +146,11 @@ using VoxelSource = std::variant<VoxelTexels, VoxelBits, VoxelList, VoxelsFilled
 
 /// The unit of radiance, as fields of ports name it.
 inline constexpr const char* kRadianceUnit = "W/(sr m^2)";
+/// The condition of kinds whose radiance is divided by their member `unit`.
+inline PortCondition radianceUnitCondition() {
+  return {"unit", "the radiance that the number 1 stands for, W/(sr m^2)",
+          "light is too bright or too dark by this factor"};
+}
 
 /// What of a texture was written: the rest is whatever the memory held before.
 struct FilledTexels {

@@ -16,7 +16,11 @@ struct PortTraits<Image> {
   static PortKind kind() {
     return {"Image",
             "an image-sized result",
-            {{"texture", "d2 rgba16f or rgba32f", "radiance in W/(sr m^2) in rgb; ambient occlusion in r"}}};
+            {{"texture", "d2 rgba16f or rgba32f", "radiance in W/(sr m^2) in rgb; ambient occlusion in r"}},
+            {},
+            {},
+            {{"radiance", "false: fractions, counts or colours that stand for something, in place of light",
+              "they are exposed as if they were light", "that show it"}}};
   }
   static void contents(const Image& port, PortContents& contents) {
     contents.texture("texture", port.texture);

@@ -7,7 +7,8 @@
 
 namespace lumivox {
 
-/// Light in voxels as spherical-harmonic coefficients up to band 1, in one or more nested grids.
+/// Light in voxels as spherical-harmonic coefficients up to band 1, in one or more nested grids. Passes read
+/// it by readShGrid() of toolkit/sh_grid.h, which refuses what they do not take.
 struct ShGrid {
   /// The quantity of the coefficients. flux: of the intensity, W/sr, of the light that a voxel sends or that
   /// passes it, which grows with the voxel's face. radiance: of the radiance there, W/(sr m^2).
@@ -45,6 +46,17 @@ struct PortTraits<ShGrid> {
                   {{"red", shape, "Y00, Y1-1, Y10, Y11", kAny},
                    {"green", shape, "the same; null: as red", kAny},
                    {"blue", shape, "the same; null: as red", kAny}}};
+    kind.conditions = {
+        {"quantity",
+         "flux: the coefficients are of an intensity, W/sr, that a voxel sends or that passes it, which grows with "
+         "the voxel's face; radiance: of the radiance there, W/(sr m^2)",
+         "light depends on the size of the voxels"},
+        {"unit", "the value that the number 1 stands for, W/sr or W/(sr m^2)",
+         "light is too bright or too dark by this factor"},
+        {"readFor",
+         "the one reading, in words of the technique, whose voxels hold their values, while all others are 0; empty: "
+         "all voxels hold theirs",
+         "light is missing wherever other voxels are read"}};
     for (const char* harmonic : {"Y00", "Y1-1", "Y10", "Y11"})
       kind.fields.push_back({harmonic, quantity + std::string(harmonic) + " for red, green and blue", unit});
     return kind;
@@ -63,6 +75,7 @@ struct PortTraits<ShGrid> {
             contents.field(harmonic, VoxelBox::of(level.grid), texels, static_cast<int>(i));
         field.unit = port.quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)";
         field.constants = {{"coefficients_of", std::string(name(port.quantity))}};
+        if (!port.readFor.empty()) field.constants.emplace_back("read_for", port.readFor);
       }
     }
   }
