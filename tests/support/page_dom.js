@@ -116,11 +116,27 @@ async function main(file) {
   }
   await settle();
 
+  // What the plugin for names writes on a plot of 600 x 400, where the points lie evenly between the ends of their axes.
+  const namesAt = ({ data, plugins, options }) => {
+    const names = [], plugin = (plugins || []).find(one => one.id === "pointNames");
+    const points = data.datasets.filter(set => set.pointRadius !== 0).flatMap(set => set.data);
+    const scale = (axis, from, to) => {
+      const isLog = options.scales[axis].type === "logarithmic", of = isLog ? Math.log : value => value, values = points.map(point => of(point[axis]));
+      const low = Math.min(...values), high = Math.max(...values);
+      return { getPixelForValue: value => from + (to - from) * (high > low ? (of(value) - low) / (high - low) : 0.5) };
+    };
+    const ctx = { save() {}, restore() {}, measureText: text => ({ width: 6 * text.length }),
+                  fillText: (text, x, y) => names.push({ text, x, y, width: 6 * text.length }) };
+    if (plugin) plugin.afterDatasetsDraw({ ctx, data, isDatasetVisible: () => true, scales: { x: scale("x", 80, 580), y: scale("y", 350, 20) },
+                                           chartArea: { left: 50, right: 600, top: 0, bottom: 400 } });
+    return names;
+  };
   const chartFindings = charts.map(({ canvas, configuration }) => {
     const numbers = configuration.data.datasets.flatMap(set => set.data).map(point => typeof point === "number" ? point : point.y);
     if (numbers.length === 0 || !numbers.every(Number.isFinite)) problems.push("chart " + JSON.stringify(canvas.attributes) + ": its points are no numbers");
     for (const label of configuration.data.datasets.map(set => set.label)) if (!label) problems.push("chart without a label");
-    return { ...canvas.attributes, points: numbers.length, labels: configuration.data.datasets.map(set => set.label) };
+    return { ...canvas.attributes, points: numbers.length, labels: configuration.data.datasets.map(set => set.label),
+             names: namesAt(configuration) };
   });
   // Every control changes what is shown.
   const seen = () => JSON.stringify([body.shownText, charts.map(one => [one.configuration.data, one.configuration.options.scales]),

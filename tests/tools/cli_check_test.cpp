@@ -222,6 +222,59 @@ TEST_CASE("check finds what only the models show, each at its line") {
   CHECK(contains(broken.text, "error 5: mesh 'other' has no object 'other/x'"));
 }
 
+TEST_CASE(
+    "check finds faults of the text and of the files that it names in one go, in their order, and counts them") {
+  const Workplace place;
+  place.write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+  place.write("empty.obj", "v 0 0 0\n");
+  place.write("cloud.vdb", "no volume");
+  place.write("sky.png", "no image");
+  place.write("all.scene",
+              "scene \"All\" {\n"
+              "  camera main { eye 0 0 0.9  target 0 0 0  fov 70  resolution 24 16 }\n"  // no unit
+              "  material sky { texture \"sky.png\"  difuse 1 1 1 }\n"                   // misspelt
+              "  mesh room { file \"room.obj\"  material white }\n"                      // unknown
+              "  mesh broken { file \"broken.obj\"  crease -3 }\n"                       // no unit; broken
+              "  mesh other { file \"room.obj\" material sky }\n"
+              "  mesh gone { file \"gone.obj\"  scale 1 2 }\n"  // a number lacks; absent
+              "  mesh empty { file \"empty.obj\" }\n"
+              "  medium fog { file \"cloud.vdb\"  extinction -1  albedo 0.5 }\n"  // below 0; no volume
+              "  light lamp area { mesh room/pannel  radiance 1 }\n"
+              "  animate broken/any { translate 1 0 0 }\n"
+              "}\n");
+  const Checked all = checked(place, "all.scene");
+  INFO(all.text);
+  CHECK(all.result.exitCode == 2);
+  for (const char* part :
+       {"error 2: ", "error 3: unknown property 'difuse'", "error 3: ", "error 4: unknown material 'white'",
+        "error 5: ", "broken.obj", "error 7: ", "error 7: model file 'gone.obj' does not exist",
+        "error 8: ", "error 9: ", "cloud.vdb", "error 10: mesh 'room' has no object 'room/pannel'"})
+    CHECK(contains(all.text, part));
+  CHECK_FALSE(contains(all.text, "error 11: "));  // the objects of a mesh that cannot be read
+  int last = 0;
+  for (const auto& finding : all.findings) {
+    if (finding.value("file", "") != place.file("all.scene")) continue;
+    CHECK(finding.value("line", 0) >= last);
+    last = finding.value("line", 0);
+  }
+  const CommandResult said = runCommand("lumivox check '" + place.file("all.scene") + "'");
+  CHECK(contains(said.errors, "all.scene: " + std::to_string(all.findings.size()) + " errors"));
+
+  // What is wrong with the files is the same once the text is mended.
+  place.write(
+      "models.scene",
+      "scene \"Models\" {\n  camera main { eye 0 0 0.9  target 0 0 0  fov 70 deg }\n"
+      "  material sky { texture \"sky.png\" }\n  mesh room { file \"room.obj\" }\n"
+      "  mesh broken { file \"broken.obj\" }\n  mesh other { file \"room.obj\" material sky }\n"
+      "  mesh gone { file \"gone.obj\" }\n  mesh empty { file \"empty.obj\" }\n"
+      "  medium fog { file \"cloud.vdb\"  extinction 1 }\n  light lamp area { mesh room/pannel  radiance 1 }\n}\n");
+  const Checked models = checked(place, "models.scene");
+  INFO(models.text);
+  CHECK(models.findings.size() >= 6);
+  for (const auto& finding : models.findings)
+    CHECK(contains(all.text, finding.value("what", "").substr(0, 40)));
+}
+
 TEST_CASE("check finds models and images that are nowhere or in a format that cannot be read") {
   const Workplace place;
   place.write("room.gltf", "{}");

@@ -68,6 +68,23 @@ TEST_CASE("describe fits the terminal, and names many passes with a port of the 
                  "parameter cones of voxel_cone_tracing.gather (an"));
 }
 
+TEST_CASE("describe explains a word once where it means the same at several places, and names them") {
+  const std::string text =
+      std::regex_replace(runCommand("lumivox describe camera").output, std::regex("\\s+"), " ");
+  INFO(text);
+  CHECK(contains(text,
+                 "camera (in reproduction, reproduction > row, reproduction > curve, reproduction > curve > "
+                 "point, reproduction > panel) of the scene; without it the first a name"));
+  std::size_t times = 0;
+  for (std::size_t at = text.find("without it the first"); at != std::string::npos;
+       at = text.find("without it the first", at + 1))
+    ++times;
+  CHECK(times == 1);
+  // What means something else stands apart.
+  CHECK(contains(text, "camera NAME { ... } (in scene) "));
+  CHECK(contains(text, "camera (in view) looks through a camera of the scene"));
+}
+
 TEST_CASE("describe finds a word by its singular or plural") {
   const CommandResult one = runCommand("lumivox describe cone"), many = runCommand("lumivox describe cones");
   CHECK(one.exitCode == 0);

@@ -27,15 +27,6 @@ std::size_t runsIn(const std::string& store) {
 
 namespace {
 
-/// A pipeline of its own with a sweep over these values, which rests in every frame.
-void writeSlow(const Place& place, const std::string& name, const std::string& values) {
-  place.write(name + ".pipeline",
-              "pipeline \"" + name +
-                  "\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed rest  value $value "
-                  "}\n\n  output direct paint.radiance\n}\n\nsweep values { value [" +
-                  values + "] }\n");
-}
-
 std::vector<double> valuesIn(const std::string& store) {
   std::vector<double> values;
   for (const StoredRun& run : ResultsStore(store, ResultsStore::Mode::read).runs())
@@ -88,7 +79,7 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
 TEST_CASE(
     "a report begins nothing that would end beyond its budget, says so in a line, and the same command goes on") {
   const Place place;
-  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
+  place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
   const std::vector<std::string> toPage{"--budget", "2s", "-o", place.file("page.html")};
   std::size_t before = 0, runs = 0;
   for (bool whole = false; !whole; ++runs) {
@@ -134,7 +125,7 @@ TEST_CASE(
 
 TEST_CASE("a report's page is there before its last point, whole at every moment, and says what is to come") {
   const Place place;
-  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
+  place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
   const std::string checkpoint = place.file("page.unfinished.sqlite");
   Started report(place.words("report", {"long"}, {"-o", place.file("page.html")}), place.file("said.txt"),
                  "5");
@@ -177,7 +168,7 @@ TEST_CASE(
 
 TEST_CASE("a budget in which no point would end is told, with one that begins the shortest, which does") {
   const Place place;
-  writeSlow(place, "long", "1 2 3");
+  place.writeSlow("long", "1 2 3");
   const auto made = [&](const std::string& budget) {
     const CommandResult result =
         place.run("report", {"long"}, {"--budget", budget, "-o", place.file("page.html")});
@@ -265,7 +256,7 @@ TEST_CASE("an interrupted report goes on under another command with the same poi
 TEST_CASE("of two reports at once on one page the first to end takes no point from the other") {
   const Place place;
   const std::string checkpoint = place.file("page.unfinished.sqlite");
-  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
+  place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
   const std::vector<std::string> toPage{"-o", place.file("page.html")};
   std::vector<std::string> stored = toPage;
   stored.insert(stored.end(), {"--store", place.file("results.sqlite")});

@@ -1,9 +1,15 @@
+#include <algorithm>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "lumivox/analysis/interpolation.h"
 #include "lumivox/base/file.h"
 #include "support/support.h"
+#include "tools/cli_support.h"
+#include "tools/started.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -144,6 +150,92 @@ TEST_CASE("a limit that nothing meets writes no pipeline and says so") {
   CHECK_FALSE(std::filesystem::exists(best));
 }
 
+TEST_CASE("a search says how long it takes before it begins, and that is what it takes") {
+  const Place place;
+  const std::vector<std::string> limits{"--frame-time",  "100s", "--output", "direct",
+                                        "--evaluations", "8",    "--store",  place.file("r.sqlite")};
+  const auto begun = std::chrono::steady_clock::now();
+  const CommandResult result = place.run("tune", {"slow"}, limits);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  INFO(result.errors << result.output);
+  REQUIRE(result.exitCode == 0);
+  const std::string told = "tuning: 8 points at most, 0 of the first 4 in the store: about ";
+  const std::size_t at = result.errors.find(told);
+  REQUIRE(at != std::string::npos);
+  CHECK(at < result.errors.find("slow.pipeline"));
+  CHECK(contains(result.errors, " of measuring at most, after the reference; --budget TIME ends it earlier"));
+  // Most of it are rests, which take as long on every machine.
+  const double seconds = std::stod(result.errors.substr(at + told.size()));
+  CAPTURE(seconds, took);
+  CHECK(seconds > took / 3.0);
+  CHECK(seconds < took * 3.0);
+  // What the store has costs no time.
+  const CommandResult again = place.run("tune", {"slow"}, limits);
+  INFO(again.errors);
+  CHECK(contains(again.errors,
+                 "4 of the first 4 in the store: how long further ones take is not known before"));
+  CHECK(again.output == result.output);
+}
+
+TEST_CASE(
+    "a search begins no point that would end beyond its budget, says how many, and the same command goes on") {
+  const Place place;
+  place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
+  std::vector<std::string> limits{"--frame-time",  "100s", "--output", "direct",
+                                  "--evaluations", "9",    "--store",  place.file("r.sqlite")};
+  const auto tuned = [&](const std::string& budget) {
+    std::vector<std::string> more = limits;
+    more.insert(more.end(), {"--budget", budget});
+    return place.run("tune", {"long"}, more);
+  };
+  const CommandResult none = tuned("1ms");
+  INFO(none.errors << none.output);
+  CHECK(none.exitCode == 1);
+  CHECK(contains(none.errors, "begun is what ends within 0 s (--budget)"));
+  CHECK(contains(unwrapped(none.output),
+                 "no time for 9 points: none would have ended in time; --budget 5s begins the shortest"));
+  // Each time it goes on with what lacks.
+  std::size_t before = 0, runs = 0;
+  for (std::size_t left = 9; left > 0; ++runs) {
+    REQUIRE(runs < 10);
+    const auto begun = std::chrono::steady_clock::now();
+    const CommandResult some = tuned("2500ms");
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    INFO(some.errors << some.output);
+    REQUIRE(some.exitCode == 0);
+    CHECK(seconds < 20.0);
+    const std::string text = unwrapped(some.output);
+    std::smatch measured;
+    REQUIRE(std::regex_search(text, measured, std::regex("([0-9]+) points? measured")));
+    const std::size_t points = std::stoul(measured[1]);
+    CHECK(points > before);
+    left = 9 - points;
+    CHECK(contains(text, "no time for " + std::to_string(left) + " point") == (left > 0));
+    CHECK(contains(text, "the same command goes on with them: lumivox --techniques") == (left > 0));
+    before = points;
+  }
+  CHECK(runs > 1);
+}
+
+TEST_CASE("the lines below the table of a search fit the terminal") {
+  const Place place;
+  place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
+  const CommandResult result =
+      runCommand("COLUMNS=80 " + (binaryDirectory() / "bin" / Place::program()).string() + "tune " +
+                 place.quoted("room.scene") + " --pipeline " + place.quoted("fast.pipeline") +
+                 " --pipeline " + place.quoted("long.pipeline") + Place::quick() +
+                 "-q --frame-time 100s --budget 2500ms --evaluations 13 --store " + place.quoted("r.sqlite"));
+  INFO(result.errors << result.output);
+  REQUIRE(contains(unwrapped(result.output), "no time for "));
+  std::istringstream lines(result.output.substr(result.output.find("limit 100000 ms")));
+  for (std::string line; std::getline(lines, line);) {
+    // A path is one word.
+    if (std::count(line.begin(), line.end(), ' ') < 2) continue;
+    INFO(line);
+    CHECK(line.size() <= 80);
+  }
+}
+
 TEST_CASE("contradicting or unknown wishes for tuning are refused") {
   const Tuning tuning;
   const auto refused = [&](const std::string& options, const std::string& part) {
@@ -153,7 +245,8 @@ TEST_CASE("contradicting or unknown wishes for tuning are refused") {
     CHECK(result.errors.find(part) != std::string::npos);
   };
   refused("", "a frame time or an error");
-  refused("--budget 16ms", "a budget is time for measuring; expected --frame-time 16ms");
+  refused("--frame-time 16ms --budget 30", "expected a time above 0 with its unit");
+  refused("--frame-time 16ms --budget 0s", "above 0");
   refused("--frame-time 16ms --error 1", "excludes");
   refused("--frame-time 16parsecs", "16ms or 0.5s");
   refused("--frame-time -1ms", "above 0");

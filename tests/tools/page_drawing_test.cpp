@@ -2,15 +2,10 @@
 // table, and a text stays a text. The drawing itself is tried on pages that are broken.
 #include <algorithm>
 
-#include "lumivox/analysis/comparison.h"
-#include "lumivox/page/page.h"
-#include "lumivox/page/reproduction_page.h"
 #include "lumivox/page/stress_page.h"
-#include "lumivox/page/voxel_page.h"
-#include "lumivox/results/text.h"
-#include "support/drawn_page.h"
 #include "support/page_check.h"
 #include "tools/cli_support.h"
+#include "tools/made_reports.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -18,130 +13,11 @@ using Json = nlohmann::json;
 
 namespace {
 
-bool lacksNode() {
-  if (canDrawPages()) return false;
-  skip("no node on the path");
-  return true;
-}
-
-std::string texts(const Json& list) {
-  std::string all;
-  for (const Json& one : list) all += one.get<std::string>() + "\n";
-  return all;
-}
-
-/// Rows, head included, of the table whose head begins with these cells.
-Json tableWith(const Json& page, const std::vector<std::string>& head) {
-  for (const Json& table : page.at("tables")) {
-    if (table.at(0).size() < head.size()) continue;
-    if (std::equal(head.begin(), head.end(), table.at(0).begin())) return table;
-  }
-  return Json::array();
-}
-
 constexpr const char* kDirect =
     "pipeline \"Direct <b>\" {\n  param samples 4 in 1..16\n  pass gbuffer direct_lighting.gbuffer { }\n"
     "  pass shadow direct_lighting.shadow_map { size 64  area_samples $samples }\n"
     "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
     "direct.radiance\n}\nsweep samples { samples [1 2 4] }\n";
-
-ComponentError errorOf(const std::string& output, const std::string& component, bool bias, double rmse) {
-  ComponentError error;
-  error.output = output;
-  error.component = component;
-  error.reference = bias ? "one_bounce" : "full";
-  error.bias = bias;
-  error.seeds = 3;
-  error.error.rmse = {rmse, 0.01 * rmse};
-  error.error.relativeMse = {rmse, 0.01};
-  error.error.percentile95 = rmse;
-  error.error.flip = rmse;
-  error.errorOfNothing.rmse.value = 1.0;
-  return error;
-}
-
-/// Two pipelines at three points each, whose names are as bad as a name can be; nothing is rendered.
-ReportRecord badlyNamedReport() {
-  ReportRecord record;
-  record.commandLine = "lumivox report '</script><script>alert(1)</script>'";
-  record.device.renderer = "A & B <device>";
-  SceneRecord scene;
-  scene.file = "x.scene";
-  scene.name = "<img src=x onerror=alert(1)>";
-  scene.width = scene.height = 8;
-  scene.references.push_back({"full", "png", 1.0, 0.01, 0.5, 1.0});
-  for (const std::string name : {"one", "two"})
-    for (const double samples : {1.0, 2.0, 4.0}) {
-      PointRecord point;
-      point.point.scene = scene.file;
-      point.point.pipeline = name + "&<i>.pipeline";
-      point.point.parameters["samples"].number = samples;
-      point.isDefault = samples == 2.0;
-      const double ms = samples * (name == "one" ? 1.0 : 3.0);
-      point.point.frameMs = statisticsOf({0.99 * ms, ms, 1.01 * ms});
-      point.point.nextFrameMs = statisticsOf({ms, ms, ms});
-      point.point.movedFrameMs = statisticsOf({0.5 * ms, 0.5 * ms, 0.5 * ms});
-      point.point.stillFrameMs = statisticsOf({0.25 * ms, 0.25 * ms, 0.25 * ms});
-      point.point.passOrder = {"paint"};
-      point.point.passDeviceMs["paint"] = point.point.frameMs;
-      point.point.passBytes["paint"] = 3u << 20;
-      point.point.errors = {errorOf(kWholeImage, "final", true, 0.4 / ms),
-                            errorOf(kWholeImage, "final", false, 0.5 / ms)};
-      point.point.notes = {"pass paint: 12 of \"3\""};
-      point.point.command = "lumivox report <x>";
-      scene.points.push_back(point);
-    }
-  PointRecord failed = scene.points.front();
-  failed.point = {};
-  failed.point.pipeline = "three.pipeline";
-  failed.point.failure = "it does not fit <at all>";
-  scene.points.push_back(failed);
-  PruningRecord pruning;
-  pruning.pipeline = scene.points[1].point.pipeline;
-  pruning.prunedMs = statisticsOf({1.0, 1.0, 1.0});
-  pruning.unprunedMs = statisticsOf({4.0, 4.0, 4.0});
-  pruning.nextPrunedMs = statisticsOf({0.25, 0.25, 0.25});
-  pruning.nextUnprunedMs = pruning.unprunedMs;
-  pruning.explanation.passesKept = 2;
-  pruning.explanation.passesTotal = 5;
-  pruning.explanation.leftOut.push_back(
-      {LeftOut::Level::pass, "paint <b>", "nobody looks", "paint", 2048, 1.5});
-  pruning.passOrder = {"paint"};
-  pruning.unprunedPassMs["paint"] = pruning.unprunedMs;
-  pruning.unprunedBytes = 4u << 20;
-  pruning.sameImage = true;
-  scene.pruning.push_back(pruning);
-  scene.unsuited.emplace_back("four.pipeline", "the scene has no <light>");
-  record.scenes.push_back(scene);
-  return record;
-}
-
-/// The same with voxels that light is gathered from: of "one" all are judged, of "two" one point has too
-/// many.
-ReportRecord reportWithVoxels() {
-  ReportRecord record = badlyNamedReport();
-  for (PointRecord& one : record.scenes[0].points) {
-    if (!one.point.failure.empty()) continue;
-    GatheredVoxels voxels;
-    voxels.output = "points<b>.fragments";
-    voxels.kind = "VoxelFragments";
-    voxels.resolution = {32, 16, 8};
-    const auto samples = static_cast<std::uint64_t>(one.point.parameters.at("samples").number);
-    voxels.occupied = 20 * samples;
-    voxels.error = {20 * samples, samples, 100 - 20 * samples};
-    voxels.holes = {100, 40 - 10 * samples, 100, 8 - 2 * samples};
-    if (one.point.pipeline[0] == 't' && samples == 4) voxels.whyNot = "there are <too> many";
-    one.point.voxels = voxels;
-  }
-  return record;
-}
-
-/// Writes a report's page and draws it.
-Json drawn(const ReportRecord& record, const TemporaryDirectory& place) {
-  const ReportFiles files = reportFiles(place.path() / "page.html");
-  writeReport(files, record);
-  return drawnPage(files.page);
-}
 
 }  // namespace
 
@@ -293,45 +169,6 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   CHECK(passes[1][5] == "3.0 MiB");
 }
 
-TEST_CASE(
-    "errors are drawn against the recall of the voxels that light is gathered from, beside their times") {
-  if (lacksNode()) return;
-  const TemporaryDirectory place;
-  const Json page = drawn(reportWithVoxels(), place);
-  INFO(texts(page.at("problems")));
-  CHECK(page.at("problems").empty());
-  CHECK(contains(texts(page.at("headings")), "Error against recall"));
-  // On the first screen, and in the section both side by side.
-  std::map<std::string, std::size_t> points;
-  for (const Json& chart : page.at("charts"))
-    points[chart.at("data-chart")] += chart.at("points").get<std::size_t>();
-  REQUIRE(points.size() == 3);
-  CHECK(points.at("recall") == 5);
-  CHECK(points.at("time") == points.at("error"));
-  const Json table = tableWith(page, {"Pipeline", "Parameters", "Voxels", "Grid"});
-  REQUIRE(table.size() == 6);
-  const auto& first = table[1];
-  CHECK(first[0] == "one&<i>");
-  CHECK(first[1] == "samples 1");
-  CHECK(first[2] == "points<b>.fragments");
-  CHECK(first[3] == "32 × 16 × 8");
-  CHECK(first[5] == "0.2000");
-  CHECK(first[6] == "0.9524");
-  CHECK(first[7] == "30.0 %");
-  CHECK(first[8] == "6.0 %");
-  CHECK(contains(page.at("text"), "points<b>.fragments, there are <too> many"));
-  // Without voxels there is no such section.
-  const Json without = drawn(badlyNamedReport(), place);
-  CHECK_FALSE(contains(texts(without.at("headings")), "Error against recall"));
-  CHECK(without.at("charts").size() == 1);
-  // The brief page does without.
-  const ReportFiles brief = reportFiles(place.path() / "brief.html");
-  writeReport(brief, reportWithVoxels(), ReportDetail::brief);
-  const Json small = drawnPage(brief.page);
-  CHECK(small.at("problems").empty());
-  CHECK(small.at("charts").size() == 1);
-}
-
 TEST_CASE("pipelines that come to the same passes share a row, and light that all make alike is a sentence") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
@@ -439,103 +276,25 @@ TEST_CASE("what HDR-FLIP says stands beside its first number, and two frames hav
   CHECK(formatQuartiles(statisticsOf({1.0, 2.0, 3.0})) == "[1.5, 2.5]");
 }
 
-TEST_CASE("what has one value is not drawn, and what has one choice is not asked") {
+TEST_CASE(
+    "where no pass is left out, the page says so, and what is left out within them only where there is any") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
-  ReportRecord record = reportWithVoxels();
-  for (PointRecord& one : record.scenes[0].points) {
-    if (!one.point.voxels) continue;
-    one.point.voxels->error = {20, 5, 0};
-    one.point.voxels->holes = {100, 40, 100, 8};
-  }
-  Json page = drawn(record, place);
-  INFO(texts(page.at("problems")));
-  CHECK(page.at("problems").empty());
-  CHECK(page.at("charts").size() == 1);
+  ReportRecord record = badlyNamedReport();
+  PruningRecord& pruning = record.scenes[0].pruning[0];
+  pruning.explanation.passesKept = pruning.explanation.passesTotal;
+  std::string text = drawn(record, place).at("text");
   CHECK(contains(
-      page.at("text"),
-      "Not drawn, since all points have the same: recall 1; precision 0.8; holes, rays along the axes "
-      "0.4; holes, oblique rays 0.08."));
-  CHECK(tableWith(page, {"Pipeline", "Parameters", "Voxels", "Grid"}).size() == 6);
-
-  // One share differs: there is nothing to choose it from.
-  record.scenes[0].points[0].point.voxels->holes = {100, 41, 100, 8};
-  page = drawn(record, place);
-  CHECK(page.at("problems").empty());
-  CHECK(page.at("charts").size() == 3);
-  std::string html = page.at("html");
-  CHECK_FALSE(contains(html, "data-choose=\"share\""));
-  CHECK(contains(html, "data-choose=\"light\""));
-  CHECK(contains(html, "sort by this column"));
-
-  // One point with one image, of which no other is known.
-  record.scenes[0].points.resize(1);
-  record.scenes[0].references.clear();
-  record.scenes[0].points[0].isDefault = true;
-  record.scenes[0].points[0].point.errors.resize(1);
-  record.scenes[0].points[0].images = {{kWholeImage, "final", "png", {}}};
-  record.scenes[0].pruning.clear();
-  record.scenes[0].unsuited.clear();
-  page = drawn(record, place);
-  CHECK(page.at("problems").empty());
-  html = page.at("html");
-  CHECK_FALSE(contains(html, "data-choose=\"light\""));
-  CHECK_FALSE(contains(html, "sort by this column"));
-  CHECK_FALSE(contains(html, "data-wipe"));
-  CHECK(contains(html, "<div class=\"strip\">"));
-}
-
-TEST_CASE("every chart can be saved as SVG with the names of its axes and of the points on the front") {
-  if (lacksNode()) return;
-  const TemporaryDirectory place;
-  const Json page = drawn(reportWithVoxels(), place);
-  INFO(texts(page.at("problems")));
-  CHECK(page.at("problems").empty());
-  REQUIRE(page.at("svgs").size() == page.at("charts").size());
-  const auto count = [](const std::string& text, const std::string& part) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-    return found;
-  };
-  // The whole image against full transport: six points, each slower and better than the one before.
-  const std::string svg = page.at("svgs")[0];
-  INFO(svg);
-  CHECK(contains(svg, ">frame time, ms</text>"));
-  CHECK(contains(svg, ">FLIP</text>"));
-  CHECK(count(svg, "class=\"point\"") == 6);
-  CHECK(count(svg, "class=\"legend\"") == 3);
-  CHECK(contains(svg, ">least error within a time</text>"));
-  const Json all = tableWith(page, {"Pipeline", "Parameters", "Frame, ms", "Error", "Front"});
-  std::size_t front = 0;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i][4] != "on the Pareto front") continue;
-    ++front;
-    std::string name = all[i][0].get<std::string>() + ", " + all[i][1].get<std::string>();
-    for (const auto& [from, to] : {std::pair{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}})
-      for (std::size_t at = name.find(from); at != std::string::npos; at = name.find(from, at + 1))
-        name.replace(at, 1, to);
-    INFO(name);
-    CHECK(count(svg, ">" + name + "</text>") == 1);
-  }
-  CHECK(front > 2);
-  CHECK(count(svg, "class=\"name\"") == front);
-  // No name stands upon another: lines of 11 pixels, letters about 6 wide.
-  std::vector<std::pair<double, double>> names;
-  for (std::size_t at = svg.find("<text "); at != std::string::npos; at = svg.find("<text ", at + 1)) {
-    const std::string tag = svg.substr(at, svg.find('>', at) - at);
-    if (!contains(tag, "class=\"name\"")) continue;
-    names.emplace_back(std::stod(tag.substr(tag.find("x=\"") + 3)),
-                       std::stod(tag.substr(tag.find("y=\"") + 3)));
-  }
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      CHECK((std::abs(names[i].first - names[j].first) > 60 ||
-             std::abs(names[i].second - names[j].second) > 10));
-  // Against recall no point is on a front.
-  const std::string recall = page.at("svgs")[1];
-  CHECK(contains(recall, ">recall</text>"));
-  CHECK(count(recall, "class=\"point\"") == 5);
-  CHECK(count(recall, "class=\"name\"") == 0);
+      text,
+      "What was needed: all 5 passes of 1 pipeline. What is left out within them saves up to 75.0 % of a "
+      "first frame (one&<i>) and 4.0 MiB of memory, and changes no image by a single bit."));
+  CHECK_FALSE(contains(text, "leaving out the rest"));
+  pruning.unprunedMs = pruning.prunedMs;
+  pruning.unprunedBytes = pruning.prunedBytes;
+  text = drawn(record, place).at("text");
+  CHECK(contains(text,
+                 "What was needed: all 5 passes of 1 pipeline. Nothing is left out that could be measured."));
+  CHECK_FALSE(contains(text, "0 B of memory"));
 }
 
 TEST_CASE("the page of the stress battery draws its matrix, its concerns and their images") {
@@ -577,39 +336,4 @@ TEST_CASE("the page of the stress battery draws its matrix, its concerns and the
   CHECK(matrix.at(4) == Json({"case 1", "0.031"}));
   CHECK(matrix.at(7) == Json({"case 3", ""}));
   CHECK(contains(text, "RMSE: 0.031 ± 0.002; limit 0.02"));
-}
-
-TEST_CASE("the page of the voxelizers draws its charts and both kinds of growth") {
-  if (lacksNode()) return;
-  const TemporaryDirectory place;
-  std::vector<VoxelizerRecord> records;
-  for (const int resolution : {16, 32, 64}) {
-    VoxelizerRecord record;
-    record.scene = "x.scene";
-    record.pipeline = "atlas.pipeline";
-    record.resolution = resolution;
-    record.triangles = 100;
-    record.frameMs = statisticsOf({0.01 * resolution * resolution});
-    record.occupied = 7;
-    record.error.truePositive = 5;
-    records.push_back(record);
-  }
-  records.push_back(records.back());
-  records.back().whyNot = "it is <lost>";
-  const VoxelizerFiles files = voxelizerFiles(place.path());
-  gpu::DeviceInfo device;
-  device.renderer = "device";
-  writeVoxelizers(files, records, device, "lumivox voxels");
-  const Json page = drawnPage(files.page);
-  INFO(texts(page.at("problems")));
-  CHECK(page.at("problems").empty());
-  // All have as many triangles.
-  CHECK(page.at("charts").size() == 2);
-  CHECK(contains(page.at("text"), "x, triangles: not drawn, since all points have the same triangles, 100."));
-  CHECK(tableWith(page, {"Scene", "Voxelizer"}).size() == 4);
-  CHECK(contains(page.at("text"), "it is <lost>"));
-  const Json growth = tableWith(page, {"Source", "Voxelizer"});
-  REQUIRE(growth.size() == 11);
-  CHECK(growth.back() == Json({"here, x", "atlas", "voxels along a side", "2"}));
-  CHECK(growth[1][3] == "0.739");  // log(22 / 2) / log(262267 / 10219)
 }

@@ -75,6 +75,14 @@ class Place : public Workplace {
         "tire.pipeline",
         "pipeline \"Tire\" {\n  pass paint hostile.paint { deed tire }\n\n  output direct paint.radiance\n}\n");
   }
+  /// A pipeline of its own with a sweep over these values, which rests in every frame.
+  void writeSlow(const std::string& name, const std::string& values) const {
+    write(name + ".pipeline",
+          "pipeline \"" + name +
+              "\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed rest  value $value "
+              "}\n\n  output direct paint.radiance\n}\n\nsweep values { value [" +
+              values + "] }\n");
+  }
   std::string quoted(const std::string& name) const { return "'" + file(name) + "'"; }
   static std::string techniques() { return (binaryDirectory() / "tests/plugins/hostile").string(); }
   /// The program with that technique.

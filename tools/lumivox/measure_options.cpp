@@ -51,6 +51,12 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--store", options.store, store);
 }
 
+void MeasureOptions::addBudgetTo(CLI::App& app, const std::string& order) {
+  addDuration(app, "--budget", options.budgetSeconds,
+              "time for measuring, such as 30s or 5min, counted when the references are there: " + order +
+                  "; the same command goes on (default: no limit)");
+}
+
 ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::string& doing,
                                     const std::string& unit) const {
   ReportOptions asked = options;
@@ -108,6 +114,14 @@ void refuseFrameTimeAsBudget(CLI::App& app) {
         fmt::format("--budget '{}': a budget is time for measuring; expected --frame-time {}", value, value));
   };
   app.add_option_function<std::string>("--budget", refuse)->group("");
+}
+
+std::string noTimeText(std::size_t points, double neededSeconds, const std::string& commandLine) {
+  const std::string left = fmt::format("no time for {} point{}", points, points == 1 ? "" : "s");
+  if (neededSeconds > 0.0)
+    return fmt::format("{}: none would have ended in time; --budget {:.0f}s begins the shortest\n", left,
+                       5.0 * std::ceil(neededSeconds / 5.0));
+  return fmt::format("{}; the same command goes on with them: {}\n", left, commandLine);
 }
 
 double positiveNumberOf(const std::string& option, const std::string& text) {

@@ -18,6 +18,8 @@ struct MeasureOptions {
   /// positional texts.
   void addTo(CLI::App& app, const std::string& store,
              const std::string& scenes = "the scenes' texts or names");
+  /// --budget; `order`: what is begun first.
+  void addBudgetTo(CLI::App& app, const std::string& order);
   /// Everything that was asked for, in the words of the framework. Pipelines' texts among the scenes are
   /// pipelines.
   ReportOptions asked(const GlobalOptions& global, const std::string& doing = "measuring",
@@ -36,6 +38,9 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global);
 /// A budget is time for measuring, in every command: in one that takes a frame's time, an Error names
 /// --frame-time. In no help.
 void refuseFrameTimeAsBudget(CLI::App& app);
+/// "no time for 3 points; the same command goes on with them: COMMAND", or, where none was begun, the budget
+/// that begins the shortest (ReportSummary::neededSeconds).
+std::string noTimeText(std::size_t points, double neededSeconds, const std::string& commandLine);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 

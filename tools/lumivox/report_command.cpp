@@ -60,17 +60,23 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
                                       std::filesystem::path(one.pipeline).stem().string());
   };
   const std::string those = fmt::format("{} pipeline{}", prunings.size(), prunings.size() == 1 ? "" : "s");
-  if (kept == all && bytes == 0) return fmt::format("all {} passes of {} are needed", all, those);
-  std::string text = fmt::format("{} of {} passes of {} are needed; leaving out the rest saves {}", kept, all,
-                                 those, formatBytes(bytes));
-  std::string still;
+  const bool isWhole = kept == all;
+  std::string time;
   if (first != nullptr)
-    text +=
-        saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
+    time = saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
+  // What is left out within passes, such as outputs and variants of shaders, may save time and memory, too.
+  std::string text = isWhole ? fmt::format("all {} passes of {} are needed", all, those)
+                             : fmt::format("{} of {} passes of {} are needed", kept, all, those);
+  const bool savesNothing = isWhole && bytes == 0 && time.empty() && changed.empty();
+  if (!savesNothing)
+    text += fmt::format("; {} saves {}{}", isWhole ? "what is left out within them" : "leaving out the rest",
+                        formatBytes(bytes), time);
+  std::string still;
   if (next != nullptr)
     still = saved(*next, savingText(next->standingShare(), next->nextPrunedMs, next->prunedMs),
                   "a first frame's time");
-  text += changed.empty() ? " and changes no image by a bit" : " and CHANGES the image of" + changed;
+  if (!savesNothing)
+    text += changed.empty() ? " and changes no image by a bit" : " and CHANGES the image of" + changed;
   return text + (still.empty() ? "" : "; what stands still while the camera moves saves" + still.substr(1));
 }
 
@@ -145,13 +151,8 @@ void printSummary(const ReportSummary& summary, const ReportOptions& options) {
   if (!summary.unsuited.empty())
     text += fmt::format("{} pipeline{} do not suit: {}\n", summary.unsuited.size(),
                         summary.unsuited.size() == 1 ? "" : "s", fmt::join(summary.unsuited, "; "));
-  const std::string left =
-      fmt::format("no time for {} point{}", summary.leftOutPoints, summary.leftOutPoints == 1 ? "" : "s");
-  if (summary.neededSeconds > 0.0)
-    text += fmt::format("{}: none would have ended in time; --budget {:.0f}s begins the shortest\n", left,
-                        5.0 * std::ceil(summary.neededSeconds / 5.0));
-  else if (summary.leftOutPoints > 0)
-    text += fmt::format("{}; the same command goes on with them: {}\n", left, options.commandLine);
+  if (summary.leftOutPoints > 0)
+    text += noTimeText(summary.leftOutPoints, summary.neededSeconds, options.commandLine);
   else if (summary.leftOutPrunings > 0)
     text += fmt::format("no time to time what leaving out saves, of {} pipelines\n", summary.leftOutPrunings);
   std::set<std::string> scenes;
@@ -215,10 +216,7 @@ void addReportCommand(Commands& commands) {
   command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
-  addDuration(
-      *command, "--budget", all->measure.options.budgetSeconds,
-      "time for measuring, such as 30s or 5min, counted when the references are there: a point for each "
-      "technique first, then what else there is time for; the same command goes on (default: no limit)");
+  all->measure.addBudgetTo(*command, "a point for each technique first, then what else there is time for");
   all->measure.display.addToneTo(*command);
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,

@@ -103,6 +103,11 @@ std::string warningsText(std::size_t count) {
   return count == 0 ? "" : fmt::format(", with {} warning{}", count, count == 1 ? "" : "s");
 }
 
+std::string errorsText(const CheckedFile& checked) {
+  const std::size_t count = checked.findings.size() - checked.warnings() + (checked.message.empty() ? 0 : 1);
+  return fmt::format("{} error{}", count, count == 1 ? "" : "s");
+}
+
 int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   Json list = Json::array();
@@ -124,6 +129,8 @@ int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& gl
     }
     if (!checked.findings.empty()) std::cerr << DiagnosticsError(checked.findings).what() << "\n";
     if (!checked.message.empty()) std::cerr << "lumivox: " << checked.message << "\n";
+    if (!checked.good() && !global.quiet)
+      std::cerr << file.string() << ": " << errorsText(checked) << warningsText(checked.warnings()) << "\n";
     if (checked.good() && !global.quiet)
       print(file.string() + ": good" + warningsText(checked.warnings()) + "\n");
   }

@@ -60,17 +60,20 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
                     : point.fits       ? "fits"
                                        : ""});
   }
-  std::string text = rows.size() > 1 ? textTable(rows, 2) : std::string();
   const std::string limit = options.frameTimeMs
                                 ? fmt::format("{} ms", formatMilliseconds(*options.frameTimeMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
-  text += fmt::format(
-      "{} points measured{}; limit {}; only the Pareto front is shown\n", result.seen.size(),
-      result.exhausted ? ", every neighbour of the best among them" : ", then the evaluations were used up",
-      limit);
+  std::string text = fmt::format("{} point{} measured{}; limit {}; only the Pareto front is shown\n",
+                                 result.seen.size(), result.seen.size() == 1 ? "" : "s",
+                                 result.exhausted ? ", every neighbour of the best among them"
+                                 : result.usedUp  ? ", then the evaluations were used up"
+                                                  : "",
+                                 limit);
   text += verdictText(result, options, limit);
   for (const std::string& unsuited : result.unsuited) text += "not run: " + unsuited + "\n";
-  return text;
+  if (result.leftOut > 0)
+    text += noTimeText(result.leftOut, result.neededSeconds, options.measure.commandLine);
+  return (rows.size() > 1 ? textTable(rows, 2) : std::string()) + remarks(text);
 }
 
 Json resultJson(const TuneResult& result, const TuneOptions& options) {
@@ -95,6 +98,7 @@ Json resultJson(const TuneResult& result, const TuneOptions& options) {
           {"winner", result.winner ? Json(*result.winner) : Json(nullptr)},
           {"least", result.least ? Json(*result.least) : Json(nullptr)},
           {"exhausted", result.exhausted},
+          {"left_out", result.leftOut},
           {"unsuited", result.unsuited}};
 }
 
@@ -140,7 +144,7 @@ void addTuneCommand(Commands& commands) {
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
   auto* frameTime =
       addDuration(*command, "--frame-time", all->frameTimeSeconds, "time limit of a frame, such as 16ms");
-  refuseFrameTimeAsBudget(*command);
+  all->measure.addBudgetTo(*command, "a point that would end beyond it is not begun");
   auto* error = command->add_option_function<double>(
       "--error",
       [all](double value) {

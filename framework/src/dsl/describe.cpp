@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "dsl/wording.h"
 
@@ -12,9 +13,15 @@ namespace {
 
 using Path = std::vector<std::string>;
 
-std::string where(const Path& path) {
-  return path.empty() ? "" : fmt::format(" (in {})", fmt::join(path, " > "));
-}
+/// The same description at several places.
+struct Described {
+  std::string title, lines;
+  std::vector<std::string> places = {};
+
+  std::string text() const {
+    return title + (places.empty() ? "" : fmt::format(" (in {})", fmt::join(places, ", "))) + "\n" + lines;
+  }
+};
 
 std::string signature(const BlockSpecification& block) {
   std::string text = block.word;
@@ -36,8 +43,8 @@ std::string notes(const PropertySpecification& property) {
   return text;
 }
 
-std::string propertyLines(const PropertySpecification& property, const Path& path) {
-  return fmt::format("{}{}\n  {}\n  {}\n", property.word, where(path), property.meaning, notes(property));
+Described described(const PropertySpecification& property) {
+  return {property.word, fmt::format("  {}\n  {}\n", property.meaning, notes(property))};
 }
 
 std::string propertyList(const std::vector<PropertySpecification>& properties) {
@@ -50,15 +57,15 @@ std::string propertyList(const std::vector<PropertySpecification>& properties) {
   return text;
 }
 
-std::string blockLines(const BlockSpecification& block, const Path& path) {
-  std::string text = fmt::format("{}{}\n  {}\n", signature(block), where(path), block.meaning);
+Described described(const BlockSpecification& block) {
+  std::string text = fmt::format("  {}\n", block.meaning);
   text += propertyList(block.properties);
   for (const auto& [kind, properties] : block.kindProperties) {
     text += fmt::format(" {} {}:\n{}", block.word, kind, propertyList(properties));
   }
   for (const BlockSpecification& inner : block.blocks)
     text += fmt::format("  {}  {}\n", signature(inner), inner.meaning);
-  return text;
+  return {signature(block), std::move(text)};
 }
 
 /// Calls back for every block and every property, with the words of the blocks around it.
@@ -126,17 +133,24 @@ std::vector<std::string> words(const std::vector<BlockSpecification>& specificat
 }
 
 std::string describe(const std::vector<BlockSpecification>& specifications, const std::string& word) {
-  std::string text;
+  std::vector<Described> all;
+  const auto add = [&](Described one, const Path& path) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Described& other) {
+      return other.title == one.title && other.lines == one.lines;
+    });
+    Described& known = same == all.end() ? all.emplace_back(std::move(one)) : *same;
+    if (!path.empty()) known.places.push_back(fmt::format("{}", fmt::join(path, " > ")));
+  };
   const Visitor visitor{[&](const BlockSpecification& block, const Path& path) {
-                          if (block.word == word)
-                            text += (text.empty() ? "" : "\n") + blockLines(block, path);
+                          if (block.word == word) add(described(block), path);
                         },
                         [&](const PropertySpecification& property, const Path& path) {
-                          if (property.word == word)
-                            text += (text.empty() ? "" : "\n") + propertyLines(property, path);
+                          if (property.word == word) add(described(property), path);
                         }};
   Path path;
   visitor.visit(specifications, path);
+  std::string text;
+  for (const Described& one : all) text += (text.empty() ? "" : "\n") + one.text();
   return text;
 }
 

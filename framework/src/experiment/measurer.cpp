@@ -13,6 +13,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/text.h"
+#include "reference/kept.h"
 
 namespace lumivox::experiment {
 namespace {
@@ -56,6 +57,17 @@ std::vector<StoredImage> storedImages(const std::vector<OutputImages>& outputs) 
   return stored;
 }
 
+/// The parts of a point's costs.
+const std::string kErrorsWork = "errors", kTimesWork = "times", kReferenceWork = "reference";
+/// A whole point of a pipeline on any scene.
+const std::string kPointWork = "point";
+
+/// Tells points of one scene from each other.
+std::string idOf(const WantedPoint& point) {
+  return fmt::format("{}|{}|{}", point.loaded->shown, pointText(point.point.parameters),
+                     point.seed ? std::to_string(*point.seed) : "");
+}
+
 /// One point that does not fit into memory, say, must not cost the others.
 void failed(StoredRun& run, const std::string& why) {
   fail(run.point, why);
@@ -65,14 +77,16 @@ void failed(StoredRun& run, const std::string& why) {
 }  // namespace
 
 Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
-                   ResultsStore& store, Scene scene, std::string sceneShown, Images images)
+                   ResultsStore& store, Scene scene, std::string sceneShown, Images images,
+                   std::shared_ptr<Costs> costs)
     : device_(device),
       techniques_(techniques),
       options_(options),
       store_(store),
       scene_(std::move(scene)),
       sceneShown_(std::move(sceneShown)),
-      images_(images) {
+      images_(images),
+      costs_(std::move(costs)) {
   std::tie(width_, height_) = measuredSize(device_, scene_, options_);
   referenceOptions_ = referenceOptionsOf(options_, width_, height_);
   noteProgress();
@@ -143,14 +157,16 @@ Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t
       return stored && stored->point.failure.empty();
     };
     if (isThere()) {
+      done_.insert(idOf(point));
       ++byOthers;
     } else if (batch.size() == kBatch || !store_.claim({key}).front()) {
       left.push_back(point);
     } else if (isThere()) {  // since the look before the claim
       store_.release({key});
+      done_.insert(idOf(point));
       ++byOthers;
     } else {
-      batch.push_back({point.loaded, std::move(run)});
+      batch.push_back({point, std::move(run)});
     }
   }
   pending = std::move(left);
@@ -182,7 +198,9 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
     for (Entry& entry : batch) {
       entry.run.created = dateText();
       store_.add(entry.run, entry.images);
+      done_.insert(idOf(entry.wanted));
     }
+    underWay_.clear();
     noteProgress();
     if (done) done(batch.empty() ? 0 : 1, byOthers);
   }
@@ -207,7 +225,7 @@ void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most)
   for (const WantedPoint& point : points) {
     if (batch.size() == most) break;
     const std::optional<StoredRun> stored = store_.find(key(point));
-    if (stored && stored->point.failure.empty()) batch.push_back({point.loaded, open(point)});
+    if (stored && stored->point.failure.empty()) batch.push_back({point, open(point)});
   }
   timeTogether(batch);
   for (const Entry& entry : batch)
@@ -259,7 +277,18 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
   }
   ReferenceOptions options = referenceOptions_;
   options.bounceLayers.assign(layers.begin(), layers.end());
+  const bool isKept = reference::isKept(scene_, options);
   reference_.emplace(scene_, options, options_.exposure);
+  if (!isKept) costs_->add(sceneShown_, kReferenceWork, referenceWeight(), reference_->seconds());
+}
+
+double Measurer::referenceWeight() const {
+  return static_cast<double>(width_) * height_ * referenceOptions_.samplesPerPixel;
+}
+
+double Measurer::referenceSeconds() const {
+  if (reference_) return 0.0;
+  return costs_->expected(sceneShown_, kReferenceWork, referenceWeight()).value_or(0.0);
 }
 
 Measurer::Frame Measurer::frame(const WantedPoint& point) {
@@ -268,13 +297,96 @@ Measurer::Frame Measurer::frame(const WantedPoint& point) {
   const TimingContext context{device_, techniques_, scene_, options_, width_, height_};
   PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline,
                             renderOptionsOf(context, run.point));
-  constexpr double kLongMs = 1000.0;  // beside it, what linking programs took is little
+  // The first frame of a process also compiles programs for the device, which may take several times its
+  // time.
+  constexpr double kLongMs = 10000.0;
   double milliseconds = executor.render(options_.time, 0, PipelineExecutor::Images::no).frameMs;
   if (milliseconds < kLongMs) {
     executor.invalidate();
     milliseconds = executor.render(options_.time, 0, PipelineExecutor::Images::no).frameMs;
   }
-  return {framesOf(run.point.parameters) * milliseconds / 1000.0, executor.readsSeed()};
+  return {milliseconds / 1000.0, executor.readsSeed()};
+}
+
+void Measurer::lookAt(const std::vector<WantedPoint>& points) {
+  for (const WantedPoint& point : points) {
+    if (wasLookedAt(point)) continue;
+    Frame& known = frames_[point.loaded];
+    whyFailed([&] { known = frame(point); });
+  }
+}
+
+double Measurer::frameSeconds(const WantedPoint& point) {
+  lookAt({point});
+  return knownFrameSeconds(point);
+}
+
+double Measurer::knownFrameSeconds(const WantedPoint& point) const {
+  return framesOf(point.point.parameters) * frames_.at(point.loaded).seconds;
+}
+
+std::string Measurer::subjectOf(const WantedPoint& point) const {
+  return sceneShown_ + ", " + point.loaded->shown;
+}
+
+double Measurer::plannedSeconds(const WantedPoint& point, const std::string& work) const {
+  // As committed pipelines took on the Cornell box (bench/point_cost): seeds are those of errors, which are
+  // also compared with references.
+  constexpr double kTimesFrames = 11.0, kTimesSeconds = 0.05;
+  constexpr double kErrorsFrames = 5.0, kSeedsFrames = 10.0, kErrorsSeconds = 0.5;
+  const double frame = knownFrameSeconds(point);
+  if (work == kTimesWork) return kTimesFrames * frame + kTimesSeconds;
+  const bool seeds = frames_.at(point.loaded).readsSeed;
+  return (kErrorsFrames + (seeds ? kSeedsFrames : 0.0)) * frame + kErrorsSeconds;
+}
+
+void Measurer::noteCost(const WantedPoint& point, const std::string& work, double seconds) {
+  if (wasLookedAt(point)) costs_->add(subjectOf(point), work, plannedSeconds(point, work), seconds);
+}
+
+double Measurer::mostSeconds(const WantedPoint& point) {
+  // Of a point the whole is bounded better than its works are.
+  constexpr double kFrames = 14.0, kFramesWithSeeds = 24.0, kSeconds = 1.0;
+  const double frame = frameSeconds(point);
+  const std::string subject = subjectOf(point);
+  const auto errors = costs_->most(subject, kErrorsWork, plannedSeconds(point, kErrorsWork));
+  const auto times = costs_->most(subject, kTimesWork, plannedSeconds(point, kTimesWork));
+  if (errors && times) return *errors + *times;
+  return (frames_.at(point.loaded).readsSeed ? kFramesWithSeeds : kFrames) * frame + kSeconds;
+}
+
+double Measurer::expectedSeconds(const WantedPoint& point, const std::string& work) const {
+  const double planned = plannedSeconds(point, work);
+  return costs_->expected(subjectOf(point), work, planned).value_or(planned);
+}
+
+double Measurer::expectedSeconds(const WantedPoint& point) const {
+  if (wasLookedAt(point)) return expectedSeconds(point, kErrorsWork) + expectedSeconds(point, kTimesWork);
+  return costs_->expected(point.loaded->shown, kPointWork, framesOf(point.point.parameters)).value_or(0.0);
+}
+
+double Measurer::secondsLeft(const std::vector<WantedPoint>& points, double room) const {
+  double left = 0.0;
+  std::set<std::string> counted = done_;
+  for (std::size_t i = 0; i < underWay_.size(); ++i) {
+    counted.insert(idOf(underWay_[i]));
+    if (!wasLookedAt(underWay_[i])) continue;
+    if (i >= untimedDone_) left += expectedSeconds(underWay_[i], kErrorsWork);
+    left += expectedSeconds(underWay_[i], kTimesWork);
+  }
+  for (const WantedPoint& point : points) {
+    if (!counted.insert(idOf(point)).second) continue;
+    const double seconds = expectedSeconds(point);
+    if (left + seconds <= room) left += seconds;
+  }
+  return left;
+}
+
+double Measurer::controlSeconds(const std::vector<WantedPoint>& points, std::size_t most) const {
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < std::min(most, points.size()); ++i)
+    if (wasLookedAt(points[i])) seconds += expectedSeconds(points[i], kTimesWork);
+  return seconds;
 }
 
 double Measurer::secondsOf(const WantedPoint& point) const {
@@ -307,16 +419,16 @@ void Measurer::measureUntimed(Entry& entry) {
     record.point = entry.run.point;
     const ReportOptions options = optionsOf(entry.run.identity);
     const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, reference()};
-    measureErrors(context, entry.loaded->pipeline, record);
-    measureFlicker(context, entry.loaded->pipeline, record);
+    measureErrors(context, entry.wanted.loaded->pipeline, record);
+    measureFlicker(context, entry.wanted.loaded->pipeline, record);
     if (options_.budgetSeconds > 0.0)
       record.point.whyNotCounted = "a frame of its own counts it, for which there is no time within a budget";
     else
-      countWork(context, entry.loaded->pipeline, record.point);
+      countWork(context, entry.wanted.loaded->pipeline, record.point);
     if (!voxelReferences_) voxelReferences_.emplace(scene_, options_.time, options_.camera, width_, height_);
     {
       const Measuring voxels(record.point, "voxels");
-      judgeVoxels(context, entry.loaded->pipeline, *voxelReferences_, record.point);
+      judgeVoxels(context, entry.wanted.loaded->pipeline, *voxelReferences_, record.point);
     }
     entry.run.point = std::move(record.point);
     if (images_ == Images::kept) entry.images = storedImages(record.images);
@@ -338,11 +450,19 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
   };
   std::vector<std::string> keys;
   for (const Entry& entry : batch) keys.push_back(entry.run.identity.key());
+  underWay_.clear();
+  untimedDone_ = 0;
+  for (const Entry& entry : batch) underWay_.push_back(entry.wanted);
+  if (done) lookAt(underWay_);
   for (Entry& entry : batch) {
     const MachineLock working(MachineLock::For::work);
     const Clock::time_point start = Clock::now();
-    if (!takeUp(entry)) measureUntimed(entry);
-    seconds_[entry.run.identity.key()] = secondsSince(start);
+    const bool takenUp = takeUp(entry);
+    if (!takenUp) measureUntimed(entry);
+    const double seconds = secondsSince(start);
+    seconds_[entry.run.identity.key()] = seconds;
+    ++untimedDone_;
+    if (!takenUp && entry.run.point.failure.empty()) noteCost(entry.wanted, kErrorsWork, seconds);
     store_.claim(keys);  // still at it
     if (done && &entry != &batch.back()) done(1, 0);
   }
@@ -362,9 +482,16 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
   // Each has as many frames as the others.
   double frames = 0.0;
   for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;
-  for (const Entry& entry : batch)
-    if (frames > 0.0)
-      seconds_[entry.run.identity.key()] += secondsSince(start) * entry.run.point.frameMs.median / frames;
+  const double all = secondsSince(start);
+  for (const Entry& entry : batch) {
+    if (!entry.run.point.failure.empty() || !(entry.run.point.frameMs.median > 0.0)) continue;
+    const WantedPoint& wanted = entry.wanted;
+    const double seconds = all * entry.run.point.frameMs.median / frames;
+    double& whole = seconds_[entry.run.identity.key()];
+    whole += seconds;
+    noteCost(wanted, kTimesWork, seconds);
+    costs_->add(wanted.loaded->shown, kPointWork, framesOf(wanted.point.parameters), whole);
+  }
 }
 
 void Measurer::timeTogether(Batch& batch) {
@@ -376,7 +503,7 @@ void Measurer::timeTogether(Batch& batch) {
     turns.push_back({runText(entry.run), [&](const std::shared_ptr<TransientMemory>& memory) {
                        const ReportOptions options = optionsOf(entry.run.identity);
                        return TimedPoint({device_, techniques_, scene_, options, width_, height_, memory},
-                                         entry.loaded->pipeline, entry.run.point);
+                                         entry.wanted.loaded->pipeline, entry.run.point);
                      }});
   }
   const int repeats = std::max(1, options_.repeats);

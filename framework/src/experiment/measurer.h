@@ -3,12 +3,16 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "experiment/choice.h"
+#include "experiment/costs.h"
 #include "experiment/gathered_voxels.h"
 #include "experiment/measure.h"
 #include "lumivox/base/interruption.h"
@@ -31,9 +35,11 @@ class Measurer {
   static constexpr std::size_t kBatch = 6;
 
   enum class Images { no, kept };
-  /// Images are kept in the store, beside the numbers, where they are wanted.
+  /// Images are kept in the store, beside the numbers, where they are wanted. Measurers of one job share what
+  /// they know of `costs`.
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
-           Scene scene, std::string sceneShown, Images images = Images::no);
+           Scene scene, std::string sceneShown, Images images = Images::no,
+           std::shared_ptr<Costs> costs = std::make_shared<Costs>());
 
   /// Which of these points the store holds, in their order, before anything is measured. A failure counts as
   /// held unless `retryFailed`.
@@ -68,13 +74,26 @@ class Measurer {
   /// there.
   void makeReference(const std::vector<WantedPoint>& points);
   SceneReference& reference() { return reference_.value(); }
-  /// A frame of it in which everything runs, s, with no more care than a plan needs; and whether it asks for
-  /// random numbers, so that seeds are to be measured. Error when it fails.
-  struct Frame {
-    double seconds = 0.0;
-    bool readsSeed = false;
-  };
-  Frame frame(const WantedPoint& point);
+  /// Renders a frame of each of their pipelines that has none yet, so that times are expected by it.
+  void lookAt(const std::vector<WantedPoint>& points);
+  bool wasLookedAt(const WantedPoint& point) const { return frames_.contains(point.loaded); }
+  /// s, of a frame of the point in which everything runs; 0 where that fails: what fails costs little, and
+  /// its point says why.
+  double frameSeconds(const WantedPoint& point);
+  double knownFrameSeconds(const WantedPoint& point) const;  ///< once its pipeline was looked at
+  /// What a point takes at most, as far as is known, s: as long as the longest of its pipeline's so far;
+  /// before there is one, by its frame (bench/point_cost). What is promised goes by it.
+  double mostSeconds(const WantedPoint& point);
+  /// What it is expected to take, s: as its likes did.
+  double expectedSeconds(const WantedPoint& point) const;
+  /// What those of these points that are not done yet, the batch under way among them, are expected to take,
+  /// s; of points that would end beyond `room` s nothing.
+  double secondsLeft(const std::vector<WantedPoint>& points,
+                     double room = std::numeric_limits<double>::infinity()) const;
+  /// What control() of these is expected to take, s.
+  double controlSeconds(const std::vector<WantedPoint>& points, std::size_t most = kBatch) const;
+  /// What making the reference is expected to take, s: 0 once it is there.
+  double referenceSeconds() const;
   /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
   double secondsOf(const WantedPoint& point) const;
   /// The same by what for; empty: it was not.
@@ -84,7 +103,7 @@ class Measurer {
   /// The options of one run: of its seeds.
   ReportOptions optionsOf(const RunIdentity& identity) const;
   struct Entry {
-    const LoadedPipeline* loaded;
+    WantedPoint wanted;
     StoredRun run;
     std::vector<StoredImage> images = {};
   };
@@ -100,6 +119,20 @@ class Measurer {
   /// What an interruption would say now.
   void noteProgress();
   void timeTogether(Batch& batch);
+  /// A frame of its pipeline, s, with no more care than a plan needs, and whether it asks for random numbers,
+  /// so that seeds are to be measured. Error when it fails.
+  struct Frame {
+    double seconds = 0.0;
+    bool readsSeed = false;
+  };
+  Frame frame(const WantedPoint& point);
+  double referenceWeight() const;
+  /// Before a point of its pipeline was measured: by its frame, s, which is also the weight of its costs.
+  double plannedSeconds(const WantedPoint& point, const std::string& work) const;
+  void noteCost(const WantedPoint& point, const std::string& work, double seconds);
+  double expectedSeconds(const WantedPoint& point, const std::string& work) const;
+  /// Of the costs of a point: its pipeline on this scene.
+  std::string subjectOf(const WantedPoint& point) const;
   std::string waitingText(const std::vector<WantedPoint>& pending) const;
 
   gpu::Device& device_;
@@ -115,6 +148,12 @@ class Measurer {
   std::optional<VoxelReferences> voxelReferences_;  ///< once a point needs them
   std::map<std::string, double> seconds_;           ///< by key
   std::map<std::string, std::map<std::string, double>> parts_;
+  std::shared_ptr<Costs> costs_;
+  std::map<const LoadedPipeline*, Frame> frames_;
+  /// The batch under way: its points, and how many of them lack nothing but times.
+  std::vector<WantedPoint> underWay_;
+  std::size_t untimedDone_ = 0;
+  std::set<std::string> done_;  ///< points that were measured, here or by others
   InterruptionNote note_;
 };
 

@@ -10,7 +10,9 @@
 #include <set>
 
 #include "base/process.h"
+#include "experiment/budget.h"
 #include "experiment/choice.h"
+#include "experiment/costs.h"
 #include "experiment/measurer.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
@@ -37,37 +39,20 @@ std::vector<OutputImages> outputImages(std::vector<StoredImage> stored) {
   return outputs;
 }
 
-/// Time for measuring, from when it is made: after the references.
-class Budget {
- public:
-  explicit Budget(double seconds) : seconds_(seconds) {}
-  double spent() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  bool isLimited() const { return seconds_ > 0.0; }
-  bool allows(double seconds) const { return !isLimited() || spent() + seconds <= seconds_; }
-  /// At most this long it goes on.
-  double left(double seconds) const {
-    return !isLimited() ? seconds : std::clamp(seconds_ - spent(), 0.0, seconds);
-  }
-
- private:
-  double seconds_;  ///< 0: no limit
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 /// One scene of a report, from its reference to its record.
 class SceneReport {
  public:
   SceneReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
               ResultsStore& checkpoint, Scene scene, const std::string& shown,
-              const std::vector<const LoadedPipeline*>& pipelines)
+              const std::vector<const LoadedPipeline*>& pipelines, const std::shared_ptr<Costs>& costs)
       : device_(device),
         techniques_(techniques),
         options_(options),
         checkpoint_(checkpoint),
         shown_(shown),
-        measurer_(device, techniques, options, checkpoint, std::move(scene), shown, Measurer::Images::kept) {
+        costs_(costs),
+        measurer_(device, techniques, options, checkpoint, std::move(scene), shown, Measurer::Images::kept,
+                  costs) {
     for (const LoadedPipeline* loaded : pipelines)
       for (PlannedPoint& planned : pointsFor(*loaded, techniques, options))
         points_.push_back({{loaded, std::move(planned)}});
@@ -106,8 +91,9 @@ class SceneReport {
   std::optional<double> leastMissingSeconds() {
     std::optional<double> least;
     for (const Point& point : points_)
-      if (point.state == State::missing && frames_.contains(point.wanted.loaded))
-        least = std::min(least.value_or(expectedSeconds(point)), expectedSeconds(point));
+      if (point.state == State::missing && measurer_.wasLookedAt(point.wanted))
+        least = std::min(least.value_or(measurer_.mostSeconds(point.wanted)),
+                         measurer_.mostSeconds(point.wanted));
     return least;
   }
 
@@ -125,9 +111,9 @@ class SceneReport {
       // To know what a further one takes would take its time, too.
       constexpr double kEnough = 0.5;
       if (!budget.allows(which == Defaults::others ? seconds : 0.0) ||
-          (which == Defaults::others && budget.isLimited() && seconds > kEnough * budget.left(1e9)))
+          (which == Defaults::others && budget.isLimited() && seconds > kEnough * budget.left()))
         break;
-      candidates.emplace_back(budget.isLimited() ? expectedSeconds(point) : 0.0, &point);
+      candidates.emplace_back(budget.isLimited() ? measurer_.mostSeconds(point.wanted) : 0.0, &point);
       if (budget.allows(seconds + candidates.back().first)) seconds += candidates.back().first;
     }
     // The cheapest first, so that there is soon something to see.
@@ -157,7 +143,7 @@ class SceneReport {
             had.count(point.wanted.loaded) != 0 || batch.size() == Measurer::kBatch)
           continue;
         had.insert(point.wanted.loaded);
-        const double expected = budget.isLimited() ? expectedSeconds(point) : 0.0;
+        const double expected = budget.isLimited() ? measurer_.mostSeconds(point.wanted) : 0.0;
         if (!budget.allows(seconds + expected)) continue;
         seconds += expected;
         batch.push_back(&point);
@@ -171,17 +157,49 @@ class SceneReport {
   /// With and without leaving out, of every pipeline whose default point works, as long as there is time:
   /// whether the images are the same and what memory it saves, or, timed, how much time too.
   void measurePrunings(bool timed, const Budget& budget, const std::function<void()>& atWork) {
-    // Warm-ups of both; and of each three frames or more, whole and by passes, and those that follow.
-    const double frames = timed ? 25.0 : 4.0;
     for (const Point& point : points_) {
       atWork();
       const PruningRecord* known = pruningOf(*point.wanted.loaded);
       if (!point.wanted.point.isDefault || !works(point) ||
           (known != nullptr && (known->prunedMs.repeats > 0 || !timed)))
         continue;
-      if (budget.allows(budget.isLimited() ? frames * frameOf(point).seconds : 0.0))
-        measurePruning(*point.wanted.loaded, timed ? options_.repeats : 0);
+      const double planned =
+          (timed ? kTimedPruningFrames : kPruningFrames) * measurer_.frameSeconds(point.wanted);
+      if (!budget.allows(budget.isLimited() ? planned : 0.0)) continue;
+      const double before = budget.spent();
+      measurePruning(*point.wanted.loaded, timed ? options_.repeats : 0);
+      if (timed) costs_->add(subjectOf(point), kPruningWork, planned, budget.spent() - before);
     }
+  }
+
+  /// So that it is known what its points cost, before the first is measured.
+  void lookAtAll() {
+    std::vector<WantedPoint> some;
+    for (const Point& point : points_)
+      if (point.state == State::missing || (point.wanted.point.isDefault && works(point)))
+        some.push_back(point.wanted);
+    measurer_.lookAt(some);
+  }
+
+  /// What is expected of points, of how much time leaving out saves, and of the control, s; of what would end
+  /// beyond `room` s nothing.
+  double secondsLeft(double room, std::size_t controls) const {
+    std::vector<WantedPoint> missing, all;
+    for (const Point& point : points_) {
+      if (point.state != State::withoutReference) all.push_back(point.wanted);
+      if (point.state == State::missing) missing.push_back(point.wanted);
+    }
+    double left = measurer_.secondsLeft(missing, room);
+    for (const Point& point : points_) {
+      const PruningRecord* known = pruningOf(*point.wanted.loaded);
+      if (!point.wanted.point.isDefault || !measurer_.wasLookedAt(point.wanted) ||
+          (known != nullptr && known->prunedMs.repeats > 0))
+        continue;
+      const double planned = kTimedPruningFrames * measurer_.knownFrameSeconds(point.wanted);
+      const double seconds = costs_->expected(subjectOf(point), kPruningWork, planned).value_or(planned);
+      if (left + seconds <= room) left += seconds;
+    }
+    return left + measurer_.controlSeconds(all, controls);
   }
 
   /// Times points once more: how far apart times of the same thing are here.
@@ -240,6 +258,12 @@ class SceneReport {
     State state = State::missing;
   };
 
+  /// Of a comparison with and without leaving out: warm-ups of both; where it is timed, of each three frames
+  /// or more, whole and by passes, and those that follow.
+  static constexpr double kPruningFrames = 4.0, kTimedPruningFrames = 25.0;
+  static constexpr const char* kPruningWork = "leaving out";
+  std::string subjectOf(const Point& point) const { return shown_ + ", " + point.wanted.loaded->shown; }
+
   std::size_t count(State state) const {
     return static_cast<std::size_t>(std::count_if(points_.begin(), points_.end(),
                                                   [&](const Point& point) { return point.state == state; }));
@@ -257,28 +281,6 @@ class SceneReport {
     const Pipeline& pipeline = point.wanted.loaded->pipeline;
     const std::vector<std::string> used = pipeline.techniques();
     return std::find(used.begin(), used.end(), pipeline.file.stem().string()) != used.end();
-  }
-
-  /// A frame in which everything runs: of the pipeline's default point, which is rendered for it where it is
-  /// not measured yet. 0 s where that fails: what fails costs little, and its point says why.
-  const Measurer::Frame& frameOf(const Point& point) {
-    const bool isNew = !frames_.contains(point.wanted.loaded);
-    Measurer::Frame& frame = frames_[point.wanted.loaded];
-    if (isNew) whyFailed([&] { frame = measurer_.frame(point.wanted); });
-    return frame;
-  }
-
-  /// What a point is expected to take, s: as long as the longest of its pipeline's so far; before there is
-  /// one, by its frame (bench/point_cost).
-  double expectedSeconds(const Point& point) {
-    double most = 0.0;
-    for (const Point& other : points_)
-      if (other.wanted.loaded == point.wanted.loaded && other.state == State::measured)
-        most = std::max(most, measurer_.secondsOf(other.wanted));
-    if (most > 0.0) return most;
-    constexpr double kFrames = 14.0, kFramesWithSeeds = 24.0, kSeconds = 1.0;
-    const Measurer::Frame& frame = frameOf(point);
-    return (frame.readsSeed ? kFramesWithSeeds : kFrames) * frame.seconds + kSeconds;
   }
 
   const PruningRecord* pruningOf(const LoadedPipeline& loaded) const {
@@ -340,10 +342,10 @@ class SceneReport {
   const ReportOptions& options_;
   ResultsStore& checkpoint_;
   std::string shown_, whyNoReference_;
+  std::shared_ptr<Costs> costs_;
   Measurer measurer_;
   std::vector<Point> points_;  ///< in the order of the pipelines and their sweeps
   std::vector<PruningRecord> pruning_;
-  std::map<const LoadedPipeline*, Measurer::Frame> frames_;
 };
 
 /// Measures all scenes, and tells `published` whenever there is more to tell. Without a limit on time
@@ -355,12 +357,15 @@ double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options,
                   results::UnfinishedStore& unfinished, const std::function<void()>& published) {
   std::size_t finished = 0, total = 0;
   for (const SceneReport& scene : scenes) total += scene.missing();
+  // Where time is short one point tells of the machine's mood.
+  const std::size_t controls = budget.isLimited() ? 1 : Measurer::kBatch;
   const auto done = [&](std::size_t points) {
     finished += points;
     unfinished.renew();
     if (!options.progress || points == 0) return;
-    const double each = budget.spent() / static_cast<double>(finished);
-    options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
+    double left = 0.0;
+    for (const SceneReport& scene : scenes) left += scene.secondsLeft(budget.left() - left, controls);
+    options.progress(finished, total, left);
   };
   const auto atWork = [&] { unfinished.renew(); };
   using Defaults = SceneReport::Defaults;
@@ -375,7 +380,10 @@ double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options,
       prune(false);
     }
   } else {
-    for (SceneReport& scene : scenes) scene.measureDefaults(Defaults::all, budget, done);
+    for (SceneReport& scene : scenes) {
+      scene.lookAtAll();
+      scene.measureDefaults(Defaults::all, budget, done);
+    }
     published();
   }
   // What leaving out saves in time is kept in no store: it must not take the time of points again and again.
@@ -392,8 +400,7 @@ double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options,
       if (const std::optional<double> seconds = scene.leastMissingSeconds())
         least = least == 0.0 ? before + *seconds : std::min(least, before + *seconds);
   if (budget.isLimited()) prune(true);
-  // Where time is short one point tells of the machine's mood.
-  for (SceneReport& scene : scenes) scene.control(budget.isLimited() ? 1 : Measurer::kBatch);
+  for (SceneReport& scene : scenes) scene.control(controls);
   return least;
 }
 
@@ -452,10 +459,11 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   results::UnfinishedStore unfinished(unfinishedStoreOf(options.output), options.commandLine);
   ResultsStore& checkpoint = unfinished.store();
   std::deque<SceneReport> reports;  // a measurer stays where it is
+  const auto costs = std::make_shared<Costs>();
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     reports.emplace_back(device, techniques, options, checkpoint, std::move(scenes[i]),
-                         shownPath(options.scenes[i]), pipelines[i]);
+                         shownPath(options.scenes[i]), pipelines[i], costs);
     const std::vector<std::string> ofScene = reports.back().keys();
     keys.insert(keys.end(), ofScene.begin(), ofScene.end());
   }

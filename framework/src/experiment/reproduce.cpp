@@ -16,6 +16,7 @@
 #include "experiment/gathered_voxels.h"
 #include "experiment/measure.h"
 #include "experiment/plan.h"
+#include "experiment/reproduction_steps.h"
 #include "experiment/turns.h"
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
@@ -52,7 +53,12 @@ class Reproduction {
   Reproduction(gpu::Device& device, TechniqueSet& techniques, const PublishedResult& published,
                const ReproduceOptions& options, const std::function<Scene(const fs::path&)>& loadScene,
                ResultsStore* store)
-      : device_(device), techniques_(techniques), options_(options), loadScene_(loadScene), store_(store) {
+      : device_(device),
+        techniques_(techniques),
+        options_(options),
+        loadScene_(loadScene),
+        store_(store),
+        steps_(options, store != nullptr) {
     result_.published = published;
     result_.device = device.info();
     result_.host = hostText();
@@ -84,15 +90,20 @@ class Reproduction {
     // Measured rows stay where they are from here on.
     for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
     for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
-    total_ = setUps_.size() * (store_ == nullptr ? 2 : 3) + result_.published.panels.size();
+    std::vector<std::string> names;
+    for (const TimedSetUp& setUp : setUps_) names.push_back(nameOf(setUp));
+    std::vector<bool> traced;
+    for (const PublishedPanel& panel : result_.published.panels) traced.push_back(!panel.reference.empty());
+    steps_.expect(names, traced);
     time();
     for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
     result_.judged = judge(result_.rows);
     if (store_ != nullptr) store();
     setUps_.clear();  // their memory, which images may need
     for (const PublishedPanel& panel : result_.published.panels) {
+      const Clock::time_point start = Clock::now();
       result_.panels.push_back(show(panel));
-      advance();
+      steps_.shownPanel(start);
     }
     for (const PublishedClaim& claim : result_.published.claims) {
       result_.claims.push_back(compared(claim));
@@ -103,9 +114,10 @@ class Reproduction {
   }
 
  private:
-  void advance() {
-    done_ = std::min(done_ + 1, total_);  // a set-up may be opened twice
-    if (options_.progress) options_.progress(done_, total_, std::numeric_limits<double>::quiet_NaN());
+  using Clock = ReproductionSteps::Clock;
+
+  static std::string nameOf(const TimedSetUp& setUp) {
+    return fmt::format("{}, camera {} at {} s", shownSetUp(setUp), setUp.options.camera, setUp.options.time);
   }
 
   void time() {
@@ -115,19 +127,22 @@ class Reproduction {
                        [&](const std::shared_ptr<TransientMemory>& memory) {
                          TimingContext context = timingOf(setUp);
                          context.transientMemory = memory;
-                         advance();
-                         return TimedPoint(context, setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+                         const Clock::time_point start = Clock::now();
+                         TimedPoint timed(context, setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+                         steps_.opened(nameOf(setUp), start);
+                         return timed;
                        },
                        [&](TimedPoint& timed) {
                          for (const auto& [published, measured] : setUp.answers)
                            readOff(setUp, timed.executor(), *published, *measured);
-                         advance();
+                         steps_.timed(nameOf(setUp));
                        }});
     // A store takes the times of later frames too.
     timeInTurns(device_, turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
     for (std::size_t i = 0; i < turns.size(); ++i) {
       TimedSetUp& setUp = setUps_[i];
       setUp.failure = turns[i].failure;
+      if (!setUp.failure.empty()) steps_.timed(nameOf(setUp));
       if (!setUp.failure.empty())
         logWarning("{}: {}: {}", result_.published.id, setUp.loaded.shown, setUp.failure);
       for (const auto& [published, measured] : setUp.answers) {
@@ -156,18 +171,20 @@ class Reproduction {
   void store() {
     // A scene that was made finer here is none that a sweep could name.
     for (TimedSetUp& setUp : setUps_) {
-      if (setUp.subdivisions == 0) store(setUp);
-      advance();
+      const Clock::time_point start = Clock::now();
+      const bool isNew = setUp.subdivisions == 0 && store(setUp);
+      steps_.stored(nameOf(setUp), start, isNew);
     }
   }
 
-  void store(TimedSetUp& setUp) {
+  /// False where the store has it already.
+  bool store(TimedSetUp& setUp) {
     StoredRun& run = setUp.run;
     for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
     std::sort(run.identity.kept.begin(), run.identity.kept.end());
     if (const auto held = store_->find(run.identity.key()); held && held->point.failure.empty()) {
       logInformation("{}: the store already has this set-up, which is kept", setUp.loaded.shown);
-      return;
+      return false;
     }
     guarded(setUp, [&] {
       PointRecord record;
@@ -187,6 +204,7 @@ class Reproduction {
     run.point.failure = setUp.failure;
     run.created = dateText();
     store_->add(run);
+    return true;
   }
 
   SceneReference& referenceOf(const TimedSetUp& setUp) {
@@ -529,7 +547,7 @@ class Reproduction {
   std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;
-  std::size_t done_ = 0, total_ = 0;  ///< steps
+  ReproductionSteps steps_;
   /// By scene, camera, time and size.
   std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<SceneReference>>
       references_;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <set>
@@ -94,10 +93,11 @@ class SweepPlan {
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, failure);
     const auto [index, isNew] = indices_.emplace(canonical, plans_.size());
     if (isNew)
-      plans_.push_back({std::make_unique<Measurer>(device_, techniques_, options_.measure, store_,
-                                                   loadScene_(file), shownPath(file)),
-                        {},
-                        {}});
+      plans_.push_back(
+          {std::make_unique<Measurer>(device_, techniques_, options_.measure, store_, loadScene_(file),
+                                      shownPath(file), Measurer::Images::no, costs_),
+           {},
+           {}});
     return plans_[index->second];
   }
 
@@ -117,6 +117,7 @@ class SweepPlan {
   std::vector<std::unique_ptr<LoadedPipeline>> loaded_;
   std::map<std::filesystem::path, std::size_t> indices_;
   std::vector<ScenePlan> plans_;
+  const std::shared_ptr<Costs> costs_ = std::make_shared<Costs>();
 };
 
 }  // namespace
@@ -136,21 +137,23 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   for (const std::filesystem::path& file : options.texts) plan.addText(file, summary);
   const std::size_t total = plan.findMissing(summary);
 
-  const auto start = std::chrono::steady_clock::now();
   std::size_t finished = 0;
+  ScenePlan* first = nullptr;
   const auto done = [&](std::size_t measured, std::size_t byOthers) {
     summary.measured += measured;
     summary.held += byOthers;
     finished += measured + byOthers;
     if (!measure.progress) return;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto left = static_cast<double>(total - finished);
-    measure.progress(finished, total, seconds / static_cast<double>(finished) * left);
+    double left = first->measurer->controlSeconds(first->missing);
+    for (const ScenePlan& scene : plan.scenes())
+      if (!scene.missing.empty())
+        left += scene.measurer->referenceSeconds() + scene.measurer->secondsLeft(scene.missing);
+    measure.progress(finished, total, left);
   };
-  ScenePlan* first = nullptr;
   for (ScenePlan& scene : plan.scenes()) {
     if (options.planOnly) break;
     if (first == nullptr && !scene.missing.empty()) first = &scene;
+    scene.measurer->lookAt(scene.missing);
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }

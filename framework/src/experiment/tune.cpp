@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <set>
+#include <utility>
 
+#include "experiment/budget.h"
 #include "experiment/measurer.h"
 #include "experiment/plan.h"
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/terminal.h"
 #include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
@@ -68,7 +69,34 @@ class Search {
   Search(TechniqueSource& techniques, const TuneOptions& options, Measurer& measurer)
       : techniques_(techniques), options_(options), measurer_(measurer) {}
 
-  /// Measures points that were not looked at yet; false when the evaluations are used up.
+  /// Says how long it will take at most, from a frame of each pipeline of the first points that the store
+  /// lacks; makes the reference that they need; then the budget begins.
+  void begin(const std::vector<WantedPoint>& first) {
+    const auto most = static_cast<std::size_t>(options_.evaluations);
+    std::vector<WantedPoint> missing;
+    for (const WantedPoint& point : missingOf(first))
+      if (missing.size() < most) missing.push_back(point);
+    measurer_.lookAt(missing);
+    first_ = first;
+    pending_ = missing;
+    finished_ = std::min(most, first.size()) - missing.size();
+    const std::string atMost = fmt::format("tuning: {} points at most, {} of the first {} in the store", most,
+                                           finished_, std::min(most, first.size()));
+    const std::optional<double> left = secondsLeft();
+    const double budget = options_.measure.budgetSeconds;
+    logInformation(
+        "{}: {}; {}", atMost,
+        left ? fmt::format("about {} of measuring at most, after the reference", durationText(*left))
+             : std::string("how long further ones take is not known before the first of them is measured"),
+        budget > 0.0 ? fmt::format("begun is what ends within {} (--budget)", durationText(budget))
+                     : std::string("--budget TIME ends it earlier"));
+    if (!missing.empty()) measurer_.makeReference(first);
+    finished_ = 0;
+    budget_ = Budget(options_.measure.budgetSeconds);
+  }
+
+  /// Measures points that were not looked at yet, as far as there is time; false when the evaluations are
+  /// used up.
   bool look(const std::vector<WantedPoint>& points) {
     std::vector<WantedPoint> fresh;
     for (const WantedPoint& point : points) {
@@ -78,11 +106,18 @@ class Search {
       }
       if (known_.insert(measurer_.key(point)).second) fresh.push_back(point);
     }
-    std::size_t missing = 0;
-    for (const bool held : measurer_.held(fresh, false)) missing += !held;
-    finished_ += fresh.size() - missing;
-    const std::vector<StoredRun> runs =
-        measurer_.fetch(fresh, [&](std::size_t own, std::size_t others) { tell(own, others); });
+    pending_ = missingOf(fresh);
+    finished_ += fresh.size() - pending_.size();
+    // In their order, although the store has some of them before others are measured.
+    std::vector<WantedPoint> left = pending_;
+    for (std::vector<WantedPoint> some = begun(left); !some.empty(); some = begun(left))
+      measurer_.fetch(some, [&](std::size_t own, std::size_t others) { tell(own, others); });
+    std::set<std::string> leftOut;
+    for (const WantedPoint& point : left) leftOut.insert(measurer_.key(point));
+    std::erase_if(fresh, [&](const WantedPoint& point) { return leftOut.contains(measurer_.key(point)); });
+    leftOut_.insert(leftOut_.end(), left.begin(), left.end());
+    pending_.clear();
+    const std::vector<StoredRun> runs = measurer_.fetch(fresh);
     for (std::size_t i = 0; i < runs.size(); ++i) add(fresh[i], runs[i]);
     markFront();
     return !usedUp_;
@@ -106,7 +141,15 @@ class Search {
 
   TuneResult finish() {
     TuneResult result;
-    result.exhausted = !usedUp_;
+    result.exhausted = !usedUp_ && leftOut_.empty();
+    result.usedUp = usedUp_;
+    result.leftOut = leftOut_.size();
+    if (measured_ == 0)
+      for (const WantedPoint& point : leftOut_) {
+        const double seconds = measurer_.mostSeconds(point);
+        result.neededSeconds =
+            result.neededSeconds == 0.0 ? seconds : std::min(result.neededSeconds, seconds);
+      }
     std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
       return a.point.tradeOff.timeMs.value < b.point.tradeOff.timeMs.value;
     });
@@ -133,17 +176,59 @@ class Search {
     return sum;
   }
 
+  std::vector<WantedPoint> missingOf(const std::vector<WantedPoint>& points) const {
+    const std::vector<bool> held = measurer_.held(points, false);
+    std::vector<WantedPoint> missing;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!held[i]) missing.push_back(points[i]);
+    return missing;
+  }
+
+  /// Takes those out that are begun next: all, or within a budget a batch of those that would end in time.
+  std::vector<WantedPoint> begun(std::vector<WantedPoint>& points) {
+    if (!budget_.isLimited()) return std::exchange(points, {});
+    std::vector<WantedPoint> begun, left;
+    double seconds = 0.0;
+    for (WantedPoint& point : points) {
+      const double most = measurer_.mostSeconds(point);
+      const bool fits = begun.size() < Measurer::kBatch && budget_.allows(seconds + most);
+      if (fits) seconds += most;
+      (fits ? begun : left).push_back(std::move(point));
+    }
+    points = std::move(left);
+    return begun;
+  }
+
+  /// What the rest takes at most, s: points that are known, and further ones, as many as there may be, of the
+  /// pipelines that are followed. Nothing where it is not known what these cost.
+  std::optional<double> secondsLeft() const {
+    const double room = budget_.left(), known = measurer_.secondsLeft(pending_, room);
+    const auto most = static_cast<std::size_t>(options_.evaluations);
+    const std::size_t further = most - std::max(known_.size(), std::min(most, first_.size()));
+    if (further == 0) return known;
+    double sum = 0.0;
+    std::size_t pipelines = 0;
+    std::set<const LoadedPipeline*> seen;
+    for (const WantedPoint& point : first_) {
+      if (!measurer_.wasLookedAt(point) || !seen.insert(point.loaded).second) continue;
+      if (options_.frameTimeMs &&
+          1000.0 * measurer_.knownFrameSeconds(point) > kNearLimit * *options_.frameTimeMs)
+        continue;
+      sum += measurer_.expectedSeconds(point);
+      ++pipelines;
+    }
+    if (seen.empty()) return std::nullopt;
+    if (pipelines == 0) return known;
+    return std::min(room, known + sum / static_cast<double>(pipelines) * static_cast<double>(further));
+  }
+
   /// How far the search is of the most that it may look at; points that the store had cost no time.
   void tell(std::size_t own, std::size_t others) {
     finished_ += own + others;
     measured_ += own;
-    const auto most = static_cast<std::size_t>(options_.evaluations);
     if (!options_.measure.progress) return;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    options_.measure.progress(finished_, most,
-                              measured_ == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                             : seconds / static_cast<double>(measured_) *
-                                                   static_cast<double>(most - std::min(most, finished_)));
+    options_.measure.progress(finished_, static_cast<std::size_t>(options_.evaluations),
+                              secondsLeft().value_or(kUnknownSeconds));
   }
 
   void add(const WantedPoint& wanted, const StoredRun& run) {
@@ -272,7 +357,10 @@ class Search {
   std::set<std::string> known_;
   bool usedUp_ = false;
   std::size_t finished_ = 0, measured_ = 0;  ///< points; of them those that were measured here
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Budget budget_{0.0};
+  /// The first of the search; of those that are looked at now the ones that the store lacked; those for which
+  /// there was no time.
+  std::vector<WantedPoint> first_, pending_, leftOut_;
 };
 
 void requireSensible(const TuneOptions& options) {
@@ -315,6 +403,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   // The defaults come first, so that few evaluations still see every technique.
   std::stable_partition(first.begin(), first.end(),
                         [](const WantedPoint& point) { return point.point.isDefault; });
+  search.begin(first);
   for (bool more = search.look(first); more;) {
     const std::vector<WantedPoint> next = search.neighbours();
     if (next.empty()) break;

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <set>
 
 #include "base/process.h"
+#include "experiment/costs.h"
 #include "experiment/gathered_voxels.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
@@ -95,20 +96,24 @@ struct Candidate {
 
 class Measurement {
  public:
-  /// `runs`: how often run() will be called for `pipelines` pipelines.
+  /// run() will be called for each resolution and then for each subdivision.
   Measurement(gpu::Device& device, TechniqueSource& techniques, const VoxelizerOptions& options,
-              std::size_t pipelines, std::size_t runs)
-      : device_(device),
-        techniques_(techniques),
-        options_(options),
-        total_(pipelines * runs * (1 + static_cast<std::size_t>(options.repeats))) {}
+              const std::vector<Pipeline>& pipelines)
+      : device_(device), techniques_(techniques), options_(options) {
+    for (const Pipeline& pipeline : pipelines) shown_.push_back(shownPath(pipeline.file));
+    for (const int resolution : options.resolutions) weights_.push_back(weightOf(resolution, 0));
+    for (int times = 1; times <= options.subdivisions; ++times)
+      weights_.push_back(weightOf(options.resolutions.front(), times));
+    total_ = shown_.size() * weights_.size() * (1 + static_cast<std::size_t>(options.repeats));
+  }
 
   /// All voxelizers on one scene at one resolution, appended to `records`.
   void run(const Scene& scene, const std::vector<Pipeline>& pipelines, int resolution, int subdivisions,
            std::vector<VoxelizerRecord>& records) {
     std::vector<Candidate> candidates;
     references_.emplace(scene, options_.time, options_.camera, options_.width, options_.height);
-    pipelinesHeld_ = 0;
+    pipelinesHeld_ = judged_ = 0;
+    referenceSeconds_ = 0.0;
     for (const Pipeline& pipeline : pipelines) {
       VoxelizerRecord blank;
       blank.scene = shownPath(scene.file);
@@ -116,7 +121,14 @@ class Measurement {
       blank.resolution = resolution;
       blank.triangles = scene.triangleCount();
       blank.subdivisions = subdivisions;
+      const double before = referenceSeconds_;
+      frameSeconds_ = 0.0;
+      const Clock::time_point start = Clock::now();
       add(scene, pipeline, blank, candidates);
+      const double judging = secondsSince(start) - (referenceSeconds_ - before);
+      costs_.add(blank.pipeline, kJudgedWork, weights_[run_], judging);
+      costs_.add(blank.pipeline, kFrameWork, weights_[run_], frameSeconds_);
+      ++judged_;
       ++pipelinesHeld_;
       advance(1);
       // Those that alternate are all held at once.
@@ -126,9 +138,42 @@ class Measurement {
       if (held > kMostBytes) time(candidates, records);
     }
     time(candidates, records);
+    ++run_;
+    judged_ = 0;
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+  /// The works of a pipeline at one resolution; a frame of each of its outputs is what its times consist of.
+  static constexpr const char *kJudgedWork = "judged", *kFrameWork = "frame", *kTimesWork = "times";
+
+  /// Costs grow with the resolution as areas or as volumes, and with the triangles or not: what lies between.
+  static double weightOf(int resolution, int subdivisions) {
+    return std::pow(resolution, 2.5) * std::pow(2.0, subdivisions);
+  }
+
+  /// What the rest takes, s. `repeats`: those of the pipelines that are held that are over.
+  double secondsLeft(int repeats) const {
+    double left = 0.0;
+    for (std::size_t run = run_; run < weights_.size(); ++run) {
+      const double weight = weights_[run];
+      if (run > run_) left += referenceRate_ * weight;
+      for (std::size_t i = 0; i < shown_.size(); ++i) {
+        const bool isJudged = run == run_ && i < judged_;
+        if (isJudged && i + pipelinesHeld_ < judged_) continue;  // timed as well
+        if (!isJudged) left += costs_.expected(shown_[i], kJudgedWork, weight).value_or(0.0);
+        const double frames = options_.repeats * costs_.expected(shown_[i], kFrameWork, weight).value_or(0.0);
+        const double times = costs_.expected(shown_[i], kTimesWork, weight).value_or(frames);
+        left += isJudged ? times * (options_.repeats - repeats) / options_.repeats : times;
+      }
+    }
+    return left;
+  }
+
   /// The repeats of these, in turns; they are records then.
   void time(std::vector<Candidate>& candidates, std::vector<VoxelizerRecord>& records) {
     // An executor that makes now this and now that output keeps the memory of all of them meanwhile, which
@@ -139,12 +184,18 @@ class Measurement {
       candidate.render(options_.time, true);
     }
     const MachineLock alone(MachineLock::For::timing);
+    std::map<std::string, double> seconds;
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-      for (Candidate& candidate : candidates)
-        if (candidate.executor && !candidate.hasEnough(options_))
-          candidate.frameMs.push_back(
-              candidate.render(options_.time, candidate.executor.use_count() > 1).frameMs);
-      advance(pipelinesHeld_);
+      for (Candidate& candidate : candidates) {
+        if (!candidate.executor || candidate.hasEnough(options_)) continue;
+        const Clock::time_point start = Clock::now();
+        candidate.frameMs.push_back(
+            candidate.render(options_.time, candidate.executor.use_count() > 1).frameMs);
+        seconds[candidate.record.pipeline] += secondsSince(start);
+      }
+      if (repeat + 1 == options_.repeats)
+        for (const auto& [pipeline, all] : seconds) costs_.add(pipeline, kTimesWork, weights_[run_], all);
+      advance(pipelinesHeld_, repeat + 1);
     }
     pipelinesHeld_ = 0;
     for (Candidate& candidate : candidates) {
@@ -154,10 +205,9 @@ class Measurement {
     candidates.clear();
   }
 
-  void advance(std::size_t steps) {
+  void advance(std::size_t steps, int repeats = 0) {
     done_ += steps;
-    if (options_.progress && steps > 0)
-      options_.progress(done_, total_, std::numeric_limits<double>::quiet_NaN());
+    if (options_.progress && steps > 0) options_.progress(done_, total_, secondsLeft(repeats));
   }
 
   /// The default point and those of the sweeps, at this resolution.
@@ -239,7 +289,7 @@ class Measurement {
     try {
       executor->keepOnly(candidate.pass, candidate.port);
       executor->invalidate();
-      executor->render(options_.time, 0, PipelineExecutor::Images::no);
+      frameSeconds_ += executor->render(options_.time, 0, PipelineExecutor::Images::no).frameMs / 1000.0;
       const OutBase* output = executor->output(candidate.pass, candidate.port);
       if (output == nullptr) return giveUp("the scene does not have what it needs");
       const auto found = occupiedVoxels(*output);
@@ -248,7 +298,10 @@ class Measurement {
       record.bytes = found->bytes;
       record.occupied = found->voxels.count();
       record.allocatedBytes = executor->explain().poolBytes;
+      const Clock::time_point start = Clock::now();
       const VoxelReferences::InGrid& reference = references_->in(found->grid);
+      referenceSeconds_ += secondsSince(start);
+      referenceRate_ = std::max(referenceRate_, referenceSeconds_ / weights_[run_]);
       record.reference = reference.voxels.certain.count();
       record.undecided = reference.voxels.possible.count() - record.reference;
       record.error = compareVoxels(found->voxels, reference.voxels);
@@ -265,8 +318,16 @@ class Measurement {
   TechniqueSource& techniques_;
   const VoxelizerOptions& options_;
   std::optional<VoxelReferences> references_;  ///< of the scene and time at hand
-  std::size_t done_ = 0, pipelinesHeld_ = 0;   ///< steps; pipelines whose repeats are still to come
-  const std::size_t total_;
+  std::size_t done_ = 0, total_ = 0;           ///< steps
+  /// Calls of run() that are over; of the one at hand: pipelines that are judged, and those of them whose
+  /// repeats are still to come.
+  std::size_t run_ = 0, judged_ = 0, pipelinesHeld_ = 0;
+  std::vector<std::string> shown_;
+  std::vector<double> weights_;  ///< of each run()
+  Costs costs_;
+  /// Of the run() at hand, the exact overlap, which is made once for all pipelines of one grid; the most that
+  /// it took for a weight of 1; and of the pipeline at hand a frame of each output.
+  double referenceSeconds_ = 0.0, referenceRate_ = 0.0, frameSeconds_ = 0.0;
 };
 
 void requireGood(const VoxelizerOptions& options) {
@@ -294,8 +355,7 @@ std::vector<VoxelizerRecord> measureVoxelizers(gpu::Device& device, TechniqueSou
                      [&](const Pipeline& pipeline) { return !settingsFor(pipeline, {setting}).empty(); }))
       pipelines.front().settings({setting});  // throws, and says what there is
   std::vector<VoxelizerRecord> records;
-  Measurement measurement(device, techniques, options, pipelines.size(),
-                          options.resolutions.size() + static_cast<std::size_t>(options.subdivisions));
+  Measurement measurement(device, techniques, options, pipelines);
   for (const int resolution : options.resolutions) measurement.run(scene, pipelines, resolution, 0, records);
   Scene finer = options.subdivisions > 0 ? subdivided(scene) : Scene();
   for (int times = 1; times <= options.subdivisions; ++times) {

@@ -9,6 +9,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/reference/reference_cache.h"
+#include "reference/kept.h"
 
 namespace lumivox {
 namespace reference {
@@ -223,6 +224,13 @@ std::map<std::string, std::string> provenance(const Scene& scene, const Resolved
   if (!options.bounceLayers.empty())
     attributes["bounce_layers"] = fmt::format("{}", fmt::join(options.bounceLayers, " "));
   return attributes;
+}
+
+bool isKept(const Scene& scene, const ReferenceOptions& options) {
+  std::error_code failure;
+  return options.useCache &&
+         std::filesystem::exists(cacheDirectory() / entryName(cacheKey(scene, resolve(scene, options))),
+                                 failure);
 }
 
 }  // namespace reference

@@ -49,7 +49,14 @@ class Reader {
       // Blocks that the grammar has refused are not judged further.
       std::vector<Diagnostic> refusals;
       dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
-      if (refusals.empty() && !holdsParameters(*item.block) && item.block->closed) read(*item.block);
+      if (!item.block->closed) continue;
+      const std::size_t before = findings_.size();
+      if (refusals.empty() && !holdsParameters(*item.block))
+        read(*item.block);
+      else
+        readFiles(*item.block);
+      if (item.block->word == "mesh" && !result_.meshes.empty() && findings_.size() > before)
+        result_.meshes.back().isSound = false;
     }
     return std::move(result_);
   }
@@ -151,6 +158,37 @@ class Reader {
     if (block.word == "environment") result_.environment = vector(checkedBlock, "radiance", glm::dvec3(0));
     if (block.word == "medium") readMedium(checkedBlock);
     if (block.word == "animate") readAnimation(checkedBlock);
+  }
+
+  /// Of a refused block the files that it names, as far as they are written well: what is wrong with them can
+  /// be found all the same.
+  void readFiles(const Block& block) {
+    const CheckedBlock checkedBlock = checked(block);
+    const auto fileIn = [&](const char* word, const std::vector<std::string>& formats) {
+      const Property* property = checkedBlock.find(word);
+      const bool isFile = property != nullptr && property->values.size() == 1 &&
+                          property->values.front().kind == dsl::ValueKind::text &&
+                          hasFormat(property->values.front().text, formats);
+      return isFile ? std::optional(placed(*property)) : std::nullopt;
+    };
+    if (block.word == "mesh") {
+      MeshText mesh;
+      mesh.name = checkedBlock.name();
+      mesh.isSound = false;
+      if (const auto file = fileIn("file", kModelFormats)) mesh.file = *file;
+      result_.meshes.push_back(std::move(mesh));
+    } else if (block.word == "material") {
+      MaterialText material;
+      material.material.name = checkedBlock.name();
+      material.texture = fileIn("texture", kImageFormats);
+      material.mask = fileIn("mask", kImageFormats);
+      result_.materials.push_back(std::move(material));
+    } else if (block.word == "medium") {
+      MediumText medium;
+      medium.place = block.place;
+      medium.file = fileIn("file", kVolumeFormats);
+      result_.media.push_back(std::move(medium));
+    }
   }
 
   static glm::dvec3 vector(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {

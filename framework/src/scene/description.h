@@ -39,6 +39,7 @@ struct MeshText {
     bool loop = true;
   };
   std::optional<Sequence> sequence;
+  bool isSound = true;  ///< false: the text has findings on it, and only its file can be looked at
 };
 
 struct MaterialText {
@@ -77,7 +78,8 @@ struct SceneDescription {
 };
 
 /// Checks a parsed text against the grammar and its own references; appends to `findings`. The result is
-/// whole only when there are none.
+/// whole only when there are none. Else it lacks what was refused, but for the names of refused meshes,
+/// materials and media and the files that they name, and materials that are named may be lacking.
 SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings);
 
 /// The ends of names of files that can be read.

@@ -48,6 +48,12 @@ std::vector<std::string> fileNames(const MeshText& mesh) {
   return names;
 }
 
+/// Whether the file of a mesh can be read whatever else the text says of it.
+bool namesOneFile(const MeshText& mesh) {
+  return !mesh.sequence && mesh.file.text.find('#') == std::string::npos &&
+         hasFormat(mesh.file.text, kModelFormats);
+}
+
 /// A scene is read to be rendered, and the first bad file ends it; or to find all that is wrong.
 enum class Purpose { rendering, checking };
 
@@ -65,6 +71,7 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
                                         "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
   };
   for (const MeshText& mesh : description.meshes) {
+    if (!mesh.isSound && !namesOneFile(mesh)) continue;
     const std::vector<std::string> names = fileNames(mesh);
     const auto last = purpose == Purpose::checking ? names.end() : names.begin() + 1;
     const auto missing = std::find_if(names.begin(), last, isMissing);
@@ -81,10 +88,12 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
 
 class Loader {
  public:
-  Loader(const dsl::Document& document, const SceneDescription& description, const AssetSearch& assets,
-         const SceneLoadOptions& options, Purpose purpose)
+  /// `isWhole`: the text has no findings.
+  Loader(const dsl::Document& document, const SceneDescription& description, bool isWhole,
+         const AssetSearch& assets, const SceneLoadOptions& options, Purpose purpose)
       : document_(document),
         description_(description),
+        isWhole_(isWhole),
         assets_(assets),
         options_(options),
         purpose_(purpose) {
@@ -102,11 +111,13 @@ class Loader {
     scene_.lights = description_.lights;
     scene_.environment = description_.environment;
     for (const MediumText& medium : description_.media) attempt(medium.file, [&] { addMedium(medium); });
-    for (const MeshText& mesh : description_.meshes)
-      if (!attempt(mesh.file, [&] { addMesh(mesh); })) unread_.insert(mesh.name);
+    for (const MeshText& mesh : description_.meshes) {
+      if (!mesh.isSound && !namesOneFile(mesh)) continue;
+      if (attempt(mesh.file, [&] { addMesh(mesh); }) && mesh.isSound) read_.insert(mesh.name);
+    }
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
-    if (unread_.empty()) checkMediaBounds();
+    if (isWhole_ && read_.size() == description_.meshes.size()) checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
     throwIfAny(std::move(findings_));
     for (Object& object : scene_.objects) object.sweptBounds = sweptBoundsOf(scene_, object);
@@ -188,7 +199,12 @@ class Loader {
     return entry->second;
   }
 
-  const MaterialText* textMaterial(const std::string& name) const { return textMaterials_.at(name); }
+  /// Where the text has findings, a material may be missing that is named.
+  const MaterialText* textMaterial(const std::string& name) const {
+    static const MaterialText missing;
+    const auto found = textMaterials_.find(name);
+    return found == textMaterials_.end() && !isWhole_ ? &missing : textMaterials_.at(name);
+  }
 
   void addMedium(const MediumText& text) {
     Medium medium = text.medium;
@@ -218,8 +234,9 @@ class Loader {
     ModelOptions modelOptions;
     modelOptions.crease = mesh.crease;
     modelOptions.strict = options_.strict;
-    modelOptions.needsMaterials = !mesh.material.has_value();
+    modelOptions.needsMaterials = !mesh.material.has_value() && mesh.isSound;
     models_.push_back(std::make_unique<Model>(loadModel(files, modelOptions, hasher_)));
+    if (!mesh.isSound) return;
     const Model& model = *models_.back();
     requireSelections(mesh, model);
 
@@ -351,7 +368,7 @@ class Loader {
     std::vector<Object*> result;
     std::vector<std::string> known;
     const std::string mesh = meshOf(path.text);
-    if (unread_.contains(mesh)) return result;
+    if (!read_.contains(mesh)) return result;
     const bool whole = mesh == path.text;
     for (Object& object : scene_.objects) {
       if (meshOf(object.name) != mesh) continue;
@@ -490,6 +507,7 @@ class Loader {
 
   const dsl::Document& document_;
   const SceneDescription& description_;
+  const bool isWhole_;
   const AssetSearch& assets_;
   const SceneLoadOptions& options_;
   Purpose purpose_;
@@ -500,7 +518,7 @@ class Loader {
   std::map<Use::Key, int> useNumbers_;                        // into uses_
   std::map<std::string, const MaterialText*> textMaterials_;  // the first of each name
   std::map<std::tuple<fs::path, bool, float>, int> textures_;
-  std::set<std::string> unread_;  // meshes whose files were refused
+  std::set<std::string> read_;  // meshes whose files were good
   std::vector<Diagnostic> findings_, warnings_;
 };
 
@@ -508,26 +526,14 @@ class Loader {
 
 namespace {
 
-/// Everything that can be found without a model; DiagnosticsError with all of it.
-SceneDescription describedScene(const dsl::Document& document, const AssetSearch& assets, Purpose purpose,
-                                std::vector<Diagnostic>& missing) {
-  std::vector<Diagnostic> findings = document.findings;
-  SceneDescription description = describeScene(document, findings);
-  const bool whole = findings.empty();
-  findMissingFiles(document, description, assets, purpose, missing);
-  if (!whole || purpose == Purpose::rendering) {
-    findings.insert(findings.end(), missing.begin(), missing.end());
-    dsl::dropConsequences(document, findings);
-    throwIfAny(std::move(findings));
-  }
-  return description;
-}
-
 Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& options) {
   const AssetSearch assets(document.file, options);
-  std::vector<Diagnostic> missing;
-  const SceneDescription description = describedScene(document, assets, Purpose::rendering, missing);
-  return Loader(document, description, assets, options, Purpose::rendering).run();
+  std::vector<Diagnostic> findings = document.findings;
+  const SceneDescription description = describeScene(document, findings);
+  findMissingFiles(document, description, assets, Purpose::rendering, findings);
+  dsl::dropConsequences(document, findings);
+  throwIfAny(std::move(findings));
+  return Loader(document, description, true, assets, options, Purpose::rendering).run();
 }
 
 }  // namespace
@@ -535,15 +541,21 @@ Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& option
 void checkScene(const fs::path& file, const SceneLoadOptions& options) {
   const dsl::Document document = dsl::parseFile(file);
   const AssetSearch assets(file, options);
-  std::vector<Diagnostic> findings;
-  const SceneDescription description = describedScene(document, assets, Purpose::checking, findings);
-  Loader loader(document, description, assets, options, Purpose::checking);
-  try {
-    loader.run();
-  } catch (const DiagnosticsError& error) {
-    findings.insert(findings.end(), error.diagnostics().begin(), error.diagnostics().end());
+  std::vector<Diagnostic> findings = document.findings;
+  const SceneDescription description = describeScene(document, findings);
+  const bool isWhole = findings.empty();
+  findMissingFiles(document, description, assets, Purpose::checking, findings);
+  // Behind more findings than are shown nobody waits for what is in the files.
+  if (isWhole || findings.size() <= kMostFindingsShown) {
+    Loader loader(document, description, isWhole, assets, options, Purpose::checking);
+    try {
+      loader.run();
+    } catch (const DiagnosticsError& error) {
+      findings.insert(findings.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+    for (const Diagnostic& warning : loader.warnings()) logFinding(warning);
   }
-  for (const Diagnostic& warning : loader.warnings()) logFinding(warning);
+  dsl::dropConsequences(document, findings);
   throwIfAny(std::move(findings));
 }
 

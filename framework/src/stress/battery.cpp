@@ -11,6 +11,7 @@
 #include "base/child.h"
 #include "base/memory_limits.h"
 #include "experiment/choice.h"
+#include "experiment/costs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
@@ -42,6 +43,7 @@ class Battery {
         store_(store),
         jobs_(plannedStress(options, techniques)),
         cells_(jobs_.size()),
+        isDone_(jobs_.size()),
         limit_(options.timeLimit > 0.0 ? options.timeLimit
                : options.quick         ? kQuickLimit
                                        : kFullLimit) {
@@ -204,10 +206,22 @@ class Battery {
     const std::lock_guard lock(mutex_);
     if (store_ != nullptr && wasRun) store_->add(std::vector<StressCell>{cells_[job]});
     ++done_;
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (options_.progress)
-      options_.progress(cells_[job], done_, jobs_.size(),
-                        seconds / static_cast<double>(done_) * static_cast<double>(jobs_.size() - done_));
+    isDone_[job] = true;
+    if (cells_[job].seconds > 0.0)
+      costs_.add(jobs_[job].pipeline.string(), jobs_[job].info.name, 1.0, cells_[job].seconds);
+    seconds_ += cells_[job].seconds;
+    if (options_.progress) options_.progress(cells_[job], done_, jobs_.size(), secondsLeft());
+  }
+
+  /// What the rest takes, s: as the same cases of other pipelines did. A case that was not run yet is as dear
+  /// as those that were.
+  double secondsLeft() const {
+    double left = 0.0;
+    for (std::size_t i = 0; i < jobs_.size(); ++i)
+      if (!isDone_[i])
+        left += costs_.expected(jobs_[i].pipeline.string(), jobs_[i].info.name, 1.0)
+                    .value_or(seconds_ / static_cast<double>(done_));
+    return left / static_cast<double>(workers_);
   }
 
   const StressOptions& options_;
@@ -215,14 +229,16 @@ class Battery {
   const std::vector<StressJob> jobs_;
   std::vector<CellRequest> requests_;
   std::vector<StressCell> cells_;
+  std::vector<bool> isDone_;
   const double limit_;
-  const Clock::time_point start_ = Clock::now();
   const std::uint64_t memoryAtStart_ = sharedMemoryLeft();  // address space each worker has of its own
   std::size_t workers_ = 1;
   WorkerDevice device_{{}, {}, {}, true};
   std::atomic<int> failedStarts_ = 0;
   std::mutex mutex_;
   std::size_t next_ = 0, done_ = 0;
+  experiment::Costs costs_;
+  double seconds_ = 0.0;  ///< of all cells that were run
   std::exception_ptr failure_;
 };
 

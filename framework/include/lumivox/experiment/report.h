@@ -43,7 +43,8 @@ struct ReportOptions {
   bool isLook = false;  ///< the page says that one frame, one seed and few positions decide nothing
   /// Called once every text and every file of a scene is read, before the first image is rendered.
   std::function<void()> allRead;
-  /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
+  /// Told after points were measured: how many of how many, and about how many seconds the rest will take;
+  /// below 0: that is not known.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
   bool openSweeps = true;                         ///< false: only the default point
   int voxelResolution = 0;                        ///< of a section on the committed voxelizers; 0: none

@@ -15,7 +15,9 @@
 namespace lumivox {
 
 struct TuneOptions {
-  ReportOptions measure;                ///< one scene; `output` is not used; `progress`: of the evaluations
+  /// One scene; `output` is not used; `progress`: of the evaluations. Within `budgetSeconds` the search
+  /// begins no point that would end later.
+  ReportOptions measure;
   std::optional<double> frameTimeMs;    ///< limit of a frame in which every kept pass runs
   std::optional<double> errorLimit;     ///< exactly one of the two
   std::string metric = kDefaultMetric;  ///< one of errorMetrics(), as errorNumber() reads it
@@ -39,6 +41,9 @@ struct TuneResult {
   std::optional<std::size_t> least;   ///< into seen: the winner by value alone
   std::string pipelineText;           ///< the winner's pipeline with its parameters as the defaults
   bool exhausted = false;             ///< every neighbour of the points that are followed was looked at
+  bool usedUp = false;                ///< there were more of them than evaluations
+  std::size_t leftOut = 0;            ///< points for which there was no time
+  double neededSeconds = 0.0;  ///< as ReportSummary's: the least budget that begins one, where none was
   std::vector<std::string> unsuited;  ///< "pipeline: why"
 };
 

@@ -46,6 +46,26 @@ const comparisonOf = (function () {
     }
   };
 
+  // Names of the points on the front, as far as they stand clear of points and of each other.
+  const pointNames = {
+    id: "pointNames",
+    afterDatasetsDraw(drawn) {
+      const { ctx, scales: { x, y }, chartArea } = drawn, size = 11, points = [];
+      drawn.data.datasets.forEach((dataset, index) => {
+        if (dataset.pointRadius === 0 || !drawn.isDatasetVisible(index)) return;
+        for (const point of dataset.data) points.push({ x: x.getPixelForValue(point.x), y: y.getPixelForValue(point.y), name: point.name });
+      });
+      ctx.save();
+      ctx.font = size + "px Helvetica, Arial, sans-serif";
+      ctx.fillStyle = theme().ink;
+      ctx.textAlign = "left";
+      ctx.textBaseline = "alphabetic";
+      const measured = { wideOf: name => ctx.measureText(name).width, onlyClear: true };
+      for (const one of plots.placeNames(points, chartArea, size, measured)) ctx.fillText(one.name, one.x, one.y);
+      ctx.restore();
+    }
+  };
+
   function drawnPoint(comparison, index) {
     const point = comparison.points[index], time = point.frame_ms;
     const by = point.beaten_by === null ? null : comparison.points[point.beaten_by];
@@ -90,7 +110,7 @@ const comparisonOf = (function () {
                     showLine: true, stepped: "before", pointRadius: 0, pointHitRadius: 0, borderWidth: 5, borderColor: band,
                     backgroundColor: band, pointStyle: "line" });
     return {
-      type: "scatter", data: { datasets }, plugins: [errorBars],
+      type: "scatter", data: { datasets }, plugins: [errorBars, pointNames],
       options: {
         animation: false, maintainAspectRatio: false,
         scales: {

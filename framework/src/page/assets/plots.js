@@ -49,26 +49,28 @@ const plots = (function () {
   }
 
   /** Where the names of points stand: one after the other each takes the first of eight places around its point at which it meets no
-   *  point, no earlier name and no border, or the place where it meets least. `points`: { x, y, name }; gives { x, y, name }, the left
-   *  end of each base line. */
-  function placeNames(points, area, size) {
+   *  point, no earlier name and no border, or the place where it meets least. `points`: { x, y, name }, without a name where a point only
+   *  takes room; gives { x, y, name }, the left end of each base line. `wideOf`: the width of a name; `onlyClear`: a name that would meet
+   *  something stands nowhere. */
+  function placeNames(points, area, size, { wideOf = name => widthOf(name, size), onlyClear = false } = {}) {
     const boxes = points.map(({ x, y }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));
     const common = (a, b) => Math.max(0, Math.min(a.right, b.right) - Math.max(a.left, b.left))
       * Math.max(0, Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
-    return points.map(({ x, y, name }) => {
-      const wide = widthOf(name, size), gap = radius + 3;
+    return points.filter(point => point.name).flatMap(({ x, y, name }) => {
+      const wide = wideOf(name), gap = radius + 3;
       // To the upper right first: fronts fall, so that their lines are seldom there.
       const beside = [[gap, -gap], [-gap - wide, gap + size], [gap, size / 3], [-gap - wide, size / 3], [-wide / 2, -gap], [-wide / 2, gap + size],
                       [gap, gap + size], [-gap - wide, -gap]];
       let best = null;
       for (const [dx, dy] of beside) {
         const box = { left: x + dx, right: x + dx + wide, top: y + dy - size, bottom: y + dy + 2 };
-        const beyond = wide * size - common(box, area) + 2 * wide;
+        const beyond = wide * (size + 2) - common(box, area);
         const met = boxes.reduce((sum, other) => sum + common(box, other), 0) + Math.max(0, beyond);
         if (best === null || met < best.met - 0.5) best = { box, met };
       }
+      if (onlyClear && best.met > 0.5) return [];
       boxes.push(best.box);
-      return { x: best.box.left, y: best.box.bottom - 2, name };
+      return [{ x: best.box.left, y: best.box.bottom - 2, name }];
     });
   }
 
@@ -123,7 +125,7 @@ const plots = (function () {
       set.data.forEach((point, index) => {
         const x = at.x(point.x), y = at.y(point.y), fill = (set.pointBackgroundColor || [])[index] || set.backgroundColor;
         within.push(shape("point", set.pointStyle, x, y, set.borderColor, fill));
-        if (point.name) named.push({ x, y, name: point.name });
+        named.push({ x, y, name: point.name });
       });
     }
     const names = placeNames(named, area, 11).map(one => text(one.x, one.y, one.name, { class: "name", "font-size": "11" }));

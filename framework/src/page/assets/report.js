@@ -58,13 +58,18 @@
     const differing = own.filter(one => !one.same_image);
     const standing = own.filter(one => one.standing_saves.told === "saved")
       .map(one => ({ name: shortName(one.pipeline), share: one.standing_saves.ms / one.standing_saves.of_ms })).sort((a, b) => b.share - a.share)[0];
+    const kept = sum("passes_kept"), all = sum("passes_total"), those = plural(own.length, "pipeline");
+    const saved = Math.max(0, sum("bytes_keep_everything") - sum("bytes")), isWhole = kept === all;
+    // What is left out within passes, such as outputs and variants of shaders, may save time and memory, too.
+    const rest = isWhole ? "What is left out within them" : "leaving out the rest";
+    const ofTime = savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})`
+      : timed > 0 ? "saves no time that could be measured" : "saves a time that was not measured";
+    const ofImages = differing.length === 0 ? "changes no image by a single bit."
+      : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + ".");
+    const nothing = isWhole && saved === 0 && savings.length === 0 && differing.length === 0;
     return h("p", null, h("b", null, "What was needed: "),
-      `${sum("passes_kept")} of ${sum("passes_total")} passes of ${plural(own.length, "pipeline")}; leaving out the rest `,
-      savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})`
-        : timed > 0 ? "saves no time that could be measured" : "saves a time that was not measured",
-      ` and ${bytes(Math.max(0, sum("bytes_keep_everything") - sum("bytes")))} of memory, and `,
-      differing.length === 0 ? "changes no image by a single bit."
-                             : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."),
+      isWhole ? `all ${plural(all, "pass", "passes")} of ${those}. ` : `${kept} of ${all} passes of ${those}; `,
+      nothing ? "Nothing is left out that could be measured." : [`${rest} ${ofTime} and ${bytes(saved)} of memory, and `, ofImages],
       standing && ` While the camera moves, what stands still saves up to ${percent(standing.share)} of a first frame (${standing.name}).`);
   }
 
