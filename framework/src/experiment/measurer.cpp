@@ -330,14 +330,14 @@ std::string Measurer::subjectOf(const WantedPoint& point) const {
 }
 
 double Measurer::plannedSeconds(const WantedPoint& point, const std::string& work) const {
-  // As committed pipelines took on the Cornell box (bench/point_cost): seeds are those of errors, which are
-  // also compared with references.
-  constexpr double kTimesFrames = 11.0, kTimesSeconds = 0.05;
-  constexpr double kErrorsFrames = 5.0, kSeedsFrames = 10.0, kErrorsSeconds = 0.5;
+  // As committed pipelines took on the Cornell box (bench/point_cost). Seeds are those of errors, and their
+  // images are compared with references.
+  constexpr double kTimesFrames = 11.0, kErrorsFrames = 5.0, kSeedsFrames = 10.0, kSeconds = 0.05;
+  constexpr double kPixelSeconds = 3e-5;
   const double frame = knownFrameSeconds(point);
-  if (work == kTimesWork) return kTimesFrames * frame + kTimesSeconds;
+  if (work == kTimesWork) return kTimesFrames * frame + kSeconds;
   const bool seeds = frames_.at(point.loaded).readsSeed;
-  return (kErrorsFrames + (seeds ? kSeedsFrames : 0.0)) * frame + kErrorsSeconds;
+  return (kErrorsFrames + (seeds ? kSeedsFrames : 0.0)) * frame + kSeconds + kPixelSeconds * width_ * height_;
 }
 
 void Measurer::noteCost(const WantedPoint& point, const std::string& work, double seconds) {
