@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line.h"
+#include "common/display_options.h"
 #include "lumivox/base/image.h"
 
 namespace lumivox::vdb {
