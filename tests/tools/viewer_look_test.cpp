@@ -108,7 +108,7 @@ TEST_CASE("a grid that is shown is exported, and a point is measured into a stor
 TEST_CASE("a program that is stopped ends, and voxels lie over what is behind them") {
   const std::atomic<bool> stop{true};
   CHECK(runProgram({"/bin/sleep", "30"}, &stop).exitCode != 0);
-  const Picture voxels = pictureOf(ImageBuffer(2, 1, 3, 1.0f), {}),
+  const Picture voxels = pictureOf(ImageBuffer(2, 1, 3, 1.0f), {0.0, Curve::srgb}),
                 behind = pictureOf(ImageBuffer(2, 1, 3, 0.0f), {});
   ImageBuffer brightness(2, 1, 1);
   brightness.at(0, 0, 0) = 0.5f;

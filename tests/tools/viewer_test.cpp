@@ -230,8 +230,8 @@ TEST_CASE("without a display a sentence says so, and wrong texts open no window"
   CHECK(contains(script.errors, "did you mean 'move'"));
   const CommandResult absent = runCommand("lumivox view '" + place.file("absent.scene") + "'");
   CHECK(absent.exitCode == 2);
-  CHECK(unwrapped(absent.errors) == "lumivox-view: " + place.file("absent.scene") +
-                                        ": cannot read: No such file or directory\n");
+  CHECK(unwrapped(absent.errors) ==
+        "lumivox-view: " + place.file("absent.scene") + ": cannot read: No such file or directory\n");
 }
 
 TEST_CASE("every statement that the window writes into its history is one that it reads") {
@@ -296,7 +296,7 @@ TEST_CASE("pictures mark what is no number, tell the sign of errors, and split w
   CHECK(error.bytes[3] > 150);  // too bright: red
   CHECK(error.bytes[5] == 0);
   const Picture dark = pictureOf(ImageBuffer(4, 1, 3, 0.0f), {}),
-                bright = pictureOf(ImageBuffer(4, 1, 3, 1.0f), {});
+                bright = pictureOf(ImageBuffer(4, 1, 3, 1.0f), {0.0, Curve::srgb});
   const Picture split = splitPicture(dark, bright, 0.5);
   CHECK(split.bytes[0] == 0);
   CHECK(split.bytes[9] == 255);
