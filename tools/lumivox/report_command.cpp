@@ -63,7 +63,8 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
   const bool isWhole = kept == all;
   std::string time;
   if (first != nullptr)
-    time = saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
+    time =
+        saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
   // What is left out within passes, such as outputs and variants of shaders, may save time and memory, too.
   std::string text = isWhole ? fmt::format("all {} passes of {} are needed", all, those)
                              : fmt::format("{} of {} passes of {} are needed", kept, all, those);
