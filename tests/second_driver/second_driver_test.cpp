@@ -95,13 +95,17 @@ double differenceOf(const ImageBuffer& image, const ImageBuffer& reference) {
   return std::sqrt(squares / count) / (sum / count);
 }
 
-void compare(const std::vector<std::string>& names) {
+/// The images of these pipelines that the drivers make differently, with what they differ by.
+std::vector<std::string> differing(const std::vector<std::string>& names) {
+  std::vector<std::string> found;
   Drivers& both = drivers();
   if (both.second == nullptr && isInstalled())
     FAIL("the second driver is installed, and no device of it can be made:" << both.failures);
-  if (both.second == nullptr)
-    return test::skip(
+  if (both.second == nullptr) {
+    test::skip(
         "the second driver, zink over lavapipe, is not installed (Debian package mesa-vulkan-drivers)");
+    return found;
+  }
   for (const char* place : {"cornell", "spinning_box", "smoke"}) {
     // Its memory is what MALLOC_PERTURB_ (tests/CMakeLists.txt) makes of it, so that texels that nobody wrote
     // are found when something reads them. Downloading what ports hold takes time: on one scene.
@@ -112,13 +116,15 @@ void compare(const std::vector<std::string>& names) {
       const double difference = differenceOf(imageBy(*both.second, scene, pipeline, health),
                                              imageBy(*both.first, scene, pipeline, false));
       const auto listed = kLessAlike.find(name);
-      INFO(name << " on " << place << ": an RMS of " << difference << " of the mean");
       if (std::getenv("LUMIVOX_PRINT_MEASURED") != nullptr)
         fmt::print("{} {} {:.2g}\n", name, place, difference);
-      CHECK(difference <= (listed != kLessAlike.end() ? listed->second.most : kSame));
+      if (!(difference <= (listed != kLessAlike.end() ? listed->second.most : kSame)))
+        found.push_back(fmt::format("{} on {}: an RMS of {} of the mean", name, place, difference));
     }
   }
+  return found;
 }
+const std::vector<std::string> kNone;
 
 // Each pipeline stands in one case, so that none takes long. The last case finds those that stand in none.
 const std::map<std::string, std::vector<std::string>> kCases = {
@@ -140,43 +146,43 @@ const std::map<std::string, std::vector<std::string>> kCases = {
 }  // namespace
 
 TEST_CASE("a second driver makes the same images: direct light and screen space") {
-  compare(kCases.at("direct light"));
+  CHECK(differing(kCases.at("direct light")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: imperfect volumes") {
-  compare(kCases.at("imperfect volumes"));
+  CHECK(differing(kCases.at("imperfect volumes")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: imperfect volumes by propagation") {
-  compare(kCases.at("imperfect volumes by propagation"));
+  CHECK(differing(kCases.at("imperfect volumes by propagation")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: implicit visibility") {
-  compare(kCases.at("implicit visibility"));
+  CHECK(differing(kCases.at("implicit visibility")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: light propagation volumes") {
-  compare(kCases.at("light propagation volumes"));
+  CHECK(differing(kCases.at("light propagation volumes")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: near field voxels") {
-  compare(kCases.at("near field voxels"));
+  CHECK(differing(kCases.at("near field voxels")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: media") {
-  compare(kCases.at("media"));
+  CHECK(differing(kCases.at("media")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: cones in dense grids") {
-  compare(kCases.at("dense grids"));
+  CHECK(differing(kCases.at("dense grids")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: a lens") {
-  compare(kCases.at("a lens"));
+  CHECK(differing(kCases.at("a lens")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: cones in directional grids") {
-  compare(kCases.at("directional grids"));
+  CHECK(differing(kCases.at("directional grids")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: cones in a clipmap") {
-  compare(kCases.at("a clipmap"));
+  CHECK(differing(kCases.at("a clipmap")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: cones in octrees") {
-  compare(kCases.at("octrees"));
+  CHECK(differing(kCases.at("octrees")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: cones in an octree of six faces") {
-  compare(kCases.at("an octree of six faces"));
+  CHECK(differing(kCases.at("an octree of six faces")) == kNone);
 }
 
 TEST_CASE("every committed pipeline is among those that the second driver renders") {
