@@ -202,6 +202,110 @@ TEST_CASE("commands and options that sentences of guides and cards name exist") 
   CHECK(options > 10);
 }
 
+TEST_CASE("the house is a map of at most 120 lines, and names every folder that has decisions") {
+  const fs::path house = sourceDirectory() / "docs/house.md";
+  const std::string map = readFile(house);
+  CHECK(std::count(map.begin(), map.end(), '\n') <= 120);
+  std::set<fs::path> linked;
+  for (const std::string& link : linksOf(map)) linked.insert((house.parent_path() / link).lexically_normal());
+  std::size_t folders = 0;
+  for (const fs::path& guide : guides()) {
+    if (guide.filename() != "README.md" || guide.parent_path() == sourceDirectory()) continue;
+    INFO(guide);
+    CHECK(linked.count(guide) == 1);
+    const std::string text = readFile(guide);
+    if (guide.parent_path() != house.parent_path()) CHECK(std::count(text.begin(), text.end(), '\n') <= 70);
+    ++folders;
+  }
+  CHECK(folders > 20);
+}
+
+TEST_CASE("the contents of the guides name every page") {
+  const fs::path docs = sourceDirectory() / "docs";
+  const std::string contents = readFile(docs / "README.md");
+  std::size_t pages = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(docs)) {
+    if (entry.path().extension() != ".md" || entry.path() == docs / "README.md") continue;
+    INFO(entry.path());
+    CHECK(contains(contents, "](" + entry.path().lexically_relative(docs).generic_string() + ") | "));
+    ++pages;
+  }
+  CHECK(pages > 20);
+}
+
+TEST_CASE("the README's table has every technique, every committed pipeline, and every table and figure") {
+  const fs::path root = sourceDirectory();
+  const std::string readme = readFile(root / "README.md");
+  const std::size_t from = readme.find("\n## Techniques\n");
+  REQUIRE(from != std::string::npos);
+  const std::string section = readme.substr(from, readme.find("\n## ", from + 1) - from);
+  for (const auto& entry : fs::directory_iterator(root / "techniques")) {
+    if (!entry.is_directory()) continue;
+    const std::string name = entry.path().filename().string();
+    INFO(name);
+    CHECK(contains(section, "| [" + name + "] | "));
+    CHECK(contains(section, "\n[" + name + "]: techniques/" + name + "/README.md\n"));
+  }
+  std::set<std::string> pipelines, named;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "scenes/pipelines"))
+    if (entry.path().extension() == ".pipeline") pipelines.insert(entry.path().stem().string());
+  static const std::regex code("`([^`]+)`");
+  // Numbers of a source's tables and figures, and what else is named: "gomes2015: tables 1, 3; memory".
+  std::set<std::string> reproduced;
+  std::istringstream lines(section);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 4; ++i) std::getline(cells, cell, '|');
+    for (std::sregex_iterator one(cell.begin(), cell.end(), code), end; one != end; ++one)
+      named.insert((*one)[1]);
+    std::string source, kind;
+    static const std::regex part("`(\\w+)`|(table|figure)s?|(\\d+)|([a-z]+(?: [a-z]+)*)");
+    std::getline(cells, cell, '|');
+    for (std::sregex_iterator one(cell.begin(), cell.end(), part), end; one != end; ++one) {
+      if ((*one)[1].matched) source = (*one)[1];
+      if ((*one)[2].matched) kind = (*one)[2];
+      if ((*one)[3].matched) reproduced.insert(source + "-" + kind + "-" + one->str());
+      if ((*one)[4].matched)
+        reproduced.insert(source + "-" + std::regex_replace(one->str(), std::regex(" "), "-"));
+    }
+  }
+  named.erase("scenes/pipelines");
+  named.erase("scenes/pipelines/voxelizers");
+  CHECK(named == pipelines);
+  // A name such as gomes2015-table-3-here is of table 3.
+  const CommandResult list =
+      runCommand("'" + (binaryDirectory() / "bin/lumivox").string() + "' reproduce --list --json");
+  REQUIRE(list.exitCode == 0);
+  static const std::regex name("\"name\": ?\"([^\"]+)\"");
+  std::set<std::string> used;
+  for (std::sregex_iterator one(list.output.begin(), list.output.end(), name), end; one != end; ++one) {
+    const std::string whole = (*one)[1];
+    INFO(whole);
+    const auto found = std::find_if(reproduced.begin(), reproduced.end(), [&](const std::string& written) {
+      return whole == written || whole.rfind(written + "-", 0) == 0;
+    });
+    CHECK(found != reproduced.end());
+    if (found != reproduced.end()) used.insert(*found);
+  }
+  CHECK(used == reproduced);
+}
+
+TEST_CASE("the project has one version: of its build, its newest changes and its citation") {
+  const auto found = [](const char* file, const char* pattern) {
+    const std::string text = readFile(sourceDirectory() / file);
+    std::smatch match;
+    INFO(file);
+    REQUIRE(std::regex_search(text, match, std::regex(pattern)));
+    return match[1].str();
+  };
+  const std::string version = found("CMakeLists.txt", "project\\(Lumivox VERSION ([\\d.]+) ");
+  CHECK(found("CHANGELOG.md", "\n## \\[(\\d[\\d.]*)\\] - \\d{4}-\\d\\d-\\d\\d\n") == version);
+  CHECK(found("CITATION.cff", "\nversion: ([\\d.]+)\n") == version);
+  CHECK(found("CITATION.cff", "^cff-version: ([\\d.]+)\n") == "1.2.0");
+}
+
 TEST_CASE("the guide to techniques shows every file of the one that `lumivox new technique` writes, whole") {
   const fs::path root = test::sourceDirectory() / "templates/technique";
   std::set<std::string> quoted;

@@ -56,9 +56,15 @@ std::vector<Quote> quotesOf(const std::string& markdown) {
 }
 
 std::vector<fs::path> guides() {
-  std::vector<fs::path> files = {sourceDirectory() / "README.md"};
-  for (const auto& entry : fs::directory_iterator(sourceDirectory() / "docs"))
+  const fs::path root = sourceDirectory();
+  std::vector<fs::path> files = {root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md"};
+  for (const auto& entry : fs::directory_iterator(root / "docs"))
     if (entry.path().extension() == ".md") files.push_back(entry.path());
+  for (const char* folder : {"cmake", "framework", "laboratory", "scenes", "shaders", "tests", "tools"})
+    if (fs::exists(root / folder))
+      for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+        if (entry.path().filename() == "README.md") files.push_back(entry.path());
+  for (const char* folder : {"techniques", "templates"}) files.push_back(root / folder / "README.md");
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -17,7 +17,8 @@ struct Quote {
 };
 std::vector<Quote> quotesOf(const std::string& markdown);
 
-/// README.md and docs/*.md.
+/// README.md, CONTRIBUTING.md, CHANGELOG.md, docs/*.md, and what the folders of the house say of themselves:
+/// their README.md, but for the paper cards.
 std::vector<std::filesystem::path> guides();
 
 /// The lines of all blocks of shell commands, without their comments.

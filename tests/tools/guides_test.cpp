@@ -341,9 +341,22 @@ TEST_CASE("texts of scenes and pipelines are checked, formatted and measured as 
   CHECK(pipeline.has("out/report/index.html"));
 }
 
-TEST_CASE("the house names what its tools need in commands that are there") {
-  const FollowedGuide guide("docs/house.md");
+TEST_CASE("what the tests need is named in commands that are there") {
+  const FollowedGuide guide("tests/README.md");
   checkFollowed(guide);
   CHECK(guide.omitted() == 2);
   CHECK(guide.has("tests/fuzz/nightly"));
+}
+
+TEST_CASE("a part and a technique are built and tested as CONTRIBUTING says") {
+  const FollowedGuide guide("CONTRIBUTING.md");
+  checkFollowed(guide);
+  CHECK(contains(guide.of("run list techniques").output, "voxel_cone_tracing"));
+  CHECK(contains(guide.of("tests/run -R '^dsl'").output, " -R ^(dsl_format|"));
+  CHECK(contains(guide.of("tests/run -R '^voxel_cone_tracing'").output, " -R ^(voxel_cone_tracing"));
+  for (const char* script :
+       {".ci/run", "tests/clean_room/run", "tests/fuzz/nightly", "tests/mutation/mutate"}) {
+    REQUIRE(guide.says(std::string("`") + script));
+    CHECK(guide.has(script));
+  }
 }

@@ -333,7 +333,7 @@ Violations brokenNames(const std::set<std::string>& files, const std::vector<std
       found.push_back(pipeline.path + ": its name starts with the name of no technique");
   }
   for (const std::string& file : files) {
-    if (!startsWith(file, "shaders/")) continue;
+    if (!startsWith(file, "shaders/") || file.find('/', 8) == std::string::npos) continue;
     const std::string folder = file.substr(8, file.find('/', 8) - 8);
     if (std::find(kOtherShaders.begin(), kOtherShaders.end(), folder) == kOtherShaders.end() &&
         std::find(techniques.begin(), techniques.end(), folder) == techniques.end())

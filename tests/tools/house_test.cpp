@@ -202,6 +202,7 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
   CHECK(brokenNames(whole, {"shading"}, uses).empty());
   CHECK(brokenNames(whole, {"shading"}, {}).size() == 1);
   CHECK(brokenNames({"shaders/other/a.comp"}, {}, {}).size() == 1);
+  CHECK(brokenNames({"shaders/README.md"}, {}, {}).empty());
   CHECK(brokenNames(whole, {"shading"}, {uses[0], {"scenes/pipelines/odd.pipeline", ""}}).size() == 1);
   const auto voxelizer = [&](const char* name) {
     return brokenNames(

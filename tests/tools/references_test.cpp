@@ -180,7 +180,9 @@ std::vector<fs::path> citingFiles() {
   static const std::set<std::string> extensions = {
       ".cpp",  ".h",     ".md",       ".glsl",  ".comp",         ".vert", ".frag",
       ".geom", ".scene", ".pipeline", ".sweep", ".reproduction", ".json"};
-  std::vector<fs::path> files = {test::sourceDirectory() / "README.md"};
+  std::vector<fs::path> files;
+  for (const char* file : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"})
+    files.push_back(test::sourceDirectory() / file);
   for (const char* folder : {"framework", "shaders", "techniques", "templates", "examples", "tools", "tests",
                              "bench", "docs", "scenes"})
     for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
