@@ -28,8 +28,16 @@ install(DIRECTORY shaders/common DESTINATION ${data}/shaders)
 install(DIRECTORY scenes templates examples DESTINATION ${data})
 # The guides link to each other and to the cards, as they do in the tree.
 install(DIRECTORY docs DESTINATION ${data})
-install(FILES README.md LICENSE DESTINATION ${data})
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${data})
 install(DIRECTORY techniques DESTINATION ${data} FILES_MATCHING PATTERN "README.md" PATTERN "*.png")
+# What the map of the house links to, without the empty folders that install(DIRECTORY) would make.
+foreach(folder cmake framework laboratory shaders tests tools)
+  file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/${folder}/README.md)
+  foreach(readme IN LISTS readmes)
+    cmake_path(GET readme PARENT_PATH place)
+    install(FILES ${readme} DESTINATION ${data}/${place})
+  endforeach()
+endforeach()
 install(FILES LICENSE DESTINATION share/doc/lumivox RENAME copyright)
 
 # Written by the programs that were just installed, from their own descriptions: manual pages, completions, and grammars for editors.
