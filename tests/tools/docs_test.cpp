@@ -267,7 +267,7 @@ TEST_CASE("the README's table has every technique, every committed pipeline, and
       if ((*one)[1].matched) source = (*one)[1];
       if ((*one)[2].matched) kind = (*one)[2];
       if ((*one)[3].matched) reproduced.insert(source + "-" + kind + "-" + one->str());
-      if ((*one)[4].matched)
+      if ((*one)[4].matched && !source.empty())
         reproduced.insert(source + "-" + std::regex_replace(one->str(), std::regex(" "), "-"));
     }
   }
