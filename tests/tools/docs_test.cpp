@@ -2,6 +2,7 @@
 // commands exist.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -362,13 +363,32 @@ TEST_CASE("a paper card begins with an image of the technique and its three head
     const std::string text = readFile(card), top = text.substr(0, text.find("\n\n", text.find("\n1. ")));
     std::smatch image;
     REQUIRE(std::regex_search(top, image,
-                              std::regex("^# \\w+\n\n!\\[[^\\]]+\\]\\(([^)]+\\.png)\\)\n\n1\\. \\*\\*")));
+                              std::regex("^# \\w+\n\n!\\[[^\\]]+\\]\\(([^)]+\\.png)\\)\n\n"
+                                         "(?:(?:[^\n1][^\n]*\n)+\n)?1\\. \\*\\*")));
     REQUIRE(fs::exists(card.parent_path() / image[1].str()));
     CHECK(fs::file_size(card.parent_path() / image[1].str()) < 60'000);
     for (const char* number : {"\n1. **", "\n2. **", "\n3. **"}) CHECK(top.find(number) != std::string::npos);
     CHECK(top.find("\n4. ") == std::string::npos);
     // And says what of its sources is not built.
     CHECK(contains(text, "\n## Not built\n\n- "));
+  }
+}
+
+TEST_CASE("a paper card has at most 2,000 words besides what is generated, and its drawing of how it works") {
+  static const std::string kNotYet = "voxel_cone_tracing";  // until it is split
+  for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / "techniques")) {
+    if (!entry.is_directory() || entry.path().filename() == kNotYet) continue;
+    INFO(entry.path());
+    const std::string text = readFile(entry.path() / "README.md");
+    std::istringstream words(withoutGenerated(text));
+    CHECK(std::distance(std::istream_iterator<std::string>(words), {}) <= 2000);
+    for (const char* heading :
+         {"How it works", "When to take it, when not", "Passes", "Published and ours", "Measured"})
+      CHECK(contains(text, "\n## " + std::string(heading) + "\n"));
+    CHECK(contains(text, "](how_it_works.svg)"));
+    REQUIRE(fs::exists(entry.path() / "how_it_works.svg"));
+    CHECK(fs::file_size(entry.path() / "how_it_works.svg") < 12'000);
+    CHECK(contains(readFile(entry.path() / "how_it_works.svg"), "<title>"));
   }
 }
 
