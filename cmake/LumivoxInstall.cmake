@@ -14,7 +14,7 @@ install(TARGETS lumivox_view RUNTIME DESTINATION bin)
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
 install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack ${CMAKE_BINARY_DIR}/lib/shaders/viewer.shaderpack
   DESTINATION lib/lumivox/shaders)
-install(DIRECTORY framework/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY framework/include/lumivox laboratory/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${LUMIVOX_GENERATED_INCLUDE}/lumivox DESTINATION include)
 
 install(EXPORT LumivoxTargets NAMESPACE Lumivox:: DESTINATION ${package})
@@ -29,7 +29,7 @@ install(DIRECTORY scenes templates examples DESTINATION ${data})
 # The guides link to each other and to the cards, as they do in the tree.
 install(DIRECTORY docs DESTINATION ${data})
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${data})
-install(DIRECTORY techniques DESTINATION ${data} FILES_MATCHING PATTERN "README.md" PATTERN "*.png")
+install(DIRECTORY techniques DESTINATION ${data} FILES_MATCHING PATTERN "README.md" PATTERN "*.png" PATTERN "*.svg")
 # What the map of the house links to, without the empty folders that install(DIRECTORY) would make.
 foreach(folder cmake framework laboratory shaders tests tools)
   file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/${folder}/README.md)

@@ -1,14 +1,18 @@
-# lumivox_part(NAME [NEEDS parts...] [LIBRARIES libraries...])
-# One part of the house: framework/include/lumivox/NAME/*.h and framework/src/NAME/*.cpp, compiled to an object library. It sees the
-# packages of the parts that it needs; the include rules of the house are held by a test.
-function(lumivox_part name)
+# lumivox_part(HOUSE/NAME [NEEDS parts...] [LIBRARIES libraries...])
+# One part of a house, the framework or the laboratory: HOUSE/include/lumivox/NAME/*.h and HOUSE/src/NAME/*.cpp, compiled to an object library.
+# It sees the packages and the public headers of the parts that it needs, and with them those of their house: the framework has none of the
+# laboratory's on its path. A test holds which part may include which.
+function(lumivox_part place)
   cmake_parse_arguments(part "" "" "NEEDS;LIBRARIES" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.cpp ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.h
-       ${CMAKE_SOURCE_DIR}/framework/include/lumivox/${name}/*.h)
+  get_filename_component(house ${place} DIRECTORY)
+  get_filename_component(name ${place} NAME)
+  set(folder ${CMAKE_SOURCE_DIR}/${house})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/src/${name}/*.cpp ${folder}/src/${name}/*.h ${folder}/include/lumivox/${name}/*.h)
   add_library(lumivox_${name} OBJECT ${sources})
   set_target_properties(lumivox_${name} PROPERTIES LINKER_LANGUAGE CXX)
-  target_include_directories(lumivox_${name} PUBLIC ${CMAKE_SOURCE_DIR}/framework/include)
-  target_include_directories(lumivox_${name} PRIVATE ${CMAKE_SOURCE_DIR}/framework/src)
+  target_include_directories(lumivox_${name} PUBLIC ${folder}/include)
+  # What the laboratory needs of the framework's inside is listed in the same test.
+  target_include_directories(lumivox_${name} PRIVATE ${folder}/src ${CMAKE_SOURCE_DIR}/framework/src)
   target_link_libraries(lumivox_${name} PUBLIC ${part_LIBRARIES})
   foreach(need IN LISTS part_NEEDS)
     target_link_libraries(lumivox_${name} PUBLIC lumivox_${need}_interface)
@@ -21,7 +25,7 @@ function(lumivox_part name)
     lumivox_precompile(lumivox_${name} HEADERS ${LUMIVOX_COMMON_HEADERS})
   endif()
   add_library(lumivox_${name}_interface INTERFACE)
-  target_include_directories(lumivox_${name}_interface INTERFACE ${CMAKE_SOURCE_DIR}/framework/include)
+  target_include_directories(lumivox_${name}_interface INTERFACE ${folder}/include)
   target_link_libraries(lumivox_${name}_interface INTERFACE ${part_LIBRARIES})
   foreach(need IN LISTS part_NEEDS)
     target_link_libraries(lumivox_${name}_interface INTERFACE lumivox_${need}_interface)
@@ -75,10 +79,12 @@ function(lumivox_library name)
   endforeach()
 endfunction()
 
-# lumivox_embed(PART): the files of framework/src/PART/assets become constants of generated/PART_assets.h, so that an editor
-# understands them and the program needs none of them beside it.
-function(lumivox_embed part)
-  file(GLOB assets CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/src/${part}/assets/*)
+# lumivox_embed(HOUSE/PART): the files of HOUSE/src/PART/assets become constants of generated/PART_assets.h, so that an editor understands
+# them and the program needs none of them beside it.
+function(lumivox_embed place)
+  get_filename_component(house ${place} DIRECTORY)
+  get_filename_component(part ${place} NAME)
+  file(GLOB assets CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${house}/src/${part}/assets/*)
   set(header ${CMAKE_BINARY_DIR}/generated/${part}_assets.h)
   add_custom_command(
     OUTPUT ${header}

@@ -1,5 +1,5 @@
 // The one surface model: Lambert diffuse / pi plus Phong specular (n + 2) / (2 pi) max(0, cos a)^n, a measured from the mirror
-// direction. The path tracer uses the same formulas (framework/src/reference).
+// direction. The path tracer uses the same formulas (laboratory/src/reference).
 #ifndef LUMIVOX_BRDF
 #define LUMIVOX_BRDF
 #include "common/constants.glsl"

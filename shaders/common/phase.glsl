@@ -1,4 +1,4 @@
-// Scattering by a medium. C++ side: framework/src/reference/media.cpp.
+// Scattering by a medium. C++ side: laboratory/src/reference/media.cpp.
 #ifndef LUMIVOX_PHASE
 #define LUMIVOX_PHASE
 #include "common/constants.glsl"

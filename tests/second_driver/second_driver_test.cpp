@@ -95,6 +95,21 @@ double differenceOf(const ImageBuffer& image, const ImageBuffer& reference) {
   return std::sqrt(squares / count) / (sum / count);
 }
 
+/// By how much the images of the two drivers differ, as differenceOf().
+/// Zink of Mesa 22.3.6 makes another image of `smoke` by imperfect_volumes_propagation in about one process of
+/// sixty on a busy machine (docs/gpu.md): a difference counts when the second driver makes it twice. The first
+/// driver must make the same bits whenever it is asked.
+double differenceBetween(Drivers& both, const Scene& scene, const Pipeline& pipeline, bool health,
+                         double most) {
+  const ImageBuffer first = imageBy(*both.first, scene, pipeline, false);
+  const double difference = differenceOf(imageBy(*both.second, scene, pipeline, health), first);
+  if (difference <= most) return difference;
+  CHECK(imageBy(*both.first, scene, pipeline, false).values() == first.values());
+  const double again = differenceOf(imageBy(*both.second, scene, pipeline, health), first);
+  if (again <= most) WARN("the second driver made another image once, by " << difference << " of the mean");
+  return again;
+}
+
 /// The images of these pipelines that the drivers make differently, with what they differ by.
 std::vector<std::string> differing(const std::vector<std::string>& names) {
   std::vector<std::string> found;
@@ -113,12 +128,12 @@ std::vector<std::string> differing(const std::vector<std::string>& names) {
     const Scene scene = loadScene(test::sourceDirectory() / "scenes" / fmt::format("{}.scene", place));
     for (const std::string& name : names) {
       const Pipeline pipeline = test::pipeline(name);
-      const double difference = differenceOf(imageBy(*both.second, scene, pipeline, health),
-                                             imageBy(*both.first, scene, pipeline, false));
       const auto listed = kLessAlike.find(name);
+      const double most = listed != kLessAlike.end() ? listed->second.most : kSame;
+      const double difference = differenceBetween(both, scene, pipeline, health, most);
       if (std::getenv("LUMIVOX_PRINT_MEASURED") != nullptr)
         fmt::print("{} {} {:.2g}\n", name, place, difference);
-      if (!(difference <= (listed != kLessAlike.end() ? listed->second.most : kSame)))
+      if (!(difference <= most))
         found.push_back(fmt::format("{} on {}: an RMS of {} of the mean", name, place, difference));
     }
   }

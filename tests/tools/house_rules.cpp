@@ -82,7 +82,7 @@ std::vector<Include> includesOf(const std::string& text) {
 // ---- the order of the parts
 // ------------------------------------------------------------------------------------------------------
 
-/// For each part of the framework those that it may include: base <- dsl <- scene; base <- gpu <- shader;
+/// For each part of both houses those that it may include: base <- dsl <- scene; base <- gpu <- shader;
 /// those <- pipeline <- toolkit, plugin; scene <- reference; base <- measure; those <- results <- analysis,
 /// roofline; analysis <- page; all but page <- experiment; all <- stress.
 static const std::map<std::string, std::set<std::string>>& houseOrder() {
@@ -112,12 +112,21 @@ static const std::map<std::string, std::set<std::string>>& houseOrder() {
   return order;
 }
 
-/// "gpu" for framework/src/gpu/x.cpp and framework/include/lumivox/gpu/x.h; empty outside the framework.
+/// "gpu" for framework/src/gpu/x.cpp and framework/include/lumivox/gpu/x.h; empty outside both houses.
 static std::string partOf(const std::string& path) {
-  static const std::regex pattern("framework/(?:src|include/lumivox)/([a-z]+)/.*");
+  static const std::regex pattern("(?:framework|laboratory)/(?:src|include/lumivox)/([a-z]+)/.*");
   std::smatch match;
   return std::regex_match(path, match, pattern) ? match[1].str() : "";
 }
+
+/// Parts that judge techniques. The rest is the framework, which techniques link.
+static const std::set<std::string> kLaboratory{"reference", "measure",    "results", "analysis",
+                                               "roofline",  "experiment", "page",    "stress"};
+/// What the laboratory sees of the framework's inside.
+static const std::set<std::string> kSeenInside{
+    "base/child.h",       "base/file_set.h",       "base/memory_limits.h", "base/process.h",
+    "dsl/consequences.h", "pipeline/changes.h",    "pipeline/graph.h",     "pipeline/pool.h",
+    "pipeline/prune.h",   "pipeline/text_values.h"};
 
 Violations brokenIncludeOrder(const Sources& sources) {
   Violations found;
@@ -129,6 +138,10 @@ Violations brokenIncludeOrder(const Sources& sources) {
       found.push_back(source.path + ": the house has no part '" + part + "'");
       continue;
     }
+    const bool judges = kLaboratory.contains(part);
+    if (startsWith(source.path, "laboratory/") != judges)
+      found.push_back(
+          fmt::format("{}: {} is a part of the {}", source.path, part, judges ? "laboratory" : "framework"));
     for (const Include& include : includesOf(source.text)) {
       std::string path = include.path;
       if (startsWith(path, "lumivox/")) path = path.substr(8);
@@ -136,15 +149,18 @@ Violations brokenIncludeOrder(const Sources& sources) {
       if (path.find('/') == std::string::npos || houseOrder().count(other) == 0 || other == part) continue;
       if (allowed->second.count(other) == 0)
         found.push_back(fmt::format("{}:{}: {} may not include {}", source.path, include.line, part, other));
+      else if (judges && !kLaboratory.contains(other) && path == include.path && !kSeenInside.contains(path))
+        found.push_back(fmt::format("{}:{}: the laboratory may not include {}, the framework's inside",
+                                    source.path, include.line, path));
     }
   }
   return found;
 }
 
-/// The build says the same: lumivox_part(NAME NEEDS parts...).
+/// The build says the same: lumivox_part(HOUSE/NAME NEEDS parts...).
 Violations brokenBuildOrder(const std::string& listFile) {
   Violations found;
-  static const std::regex pattern("lumivox_part\\((\\w+)\\s+NEEDS ([a-z ]+)");
+  static const std::regex pattern("lumivox_part\\((?:framework|laboratory)/(\\w+)\\s+NEEDS ([a-z ]+)");
   forEachMatch(listFile, pattern, [&](int line, const std::smatch& match) {
     const auto allowed = houseOrder().find(match[1]);
     std::istringstream needs(match[2]);
@@ -186,23 +202,22 @@ const Confined kOpenGl{
     "<(epoxy|GL|EGL|GLES\\d?|GLFW|KHR)/|\\b(gl|egl|glX)[A-Z]\\w*\\s*\\(|\\b(GL|EGL)_[A-Z]\\w+",
     {"framework/src/gpu/", "tools/viewer/window", "tests/framework/gpu_faults_test.cpp"}};
 const Confined kEmbree{
-    "Embree", "<embree|\\brtc[A-Z]\\w*\\s*\\(|\\bRTC[A-Z]\\w+", {"framework/src/reference/"}};
+    "Embree", "<embree|\\brtc[A-Z]\\w*\\s*\\(|\\bRTC[A-Z]\\w+", {"laboratory/src/reference/"}};
 const Confined kOpenVdb{"OpenVDB",
                         "<openvdb|\\bopenvdb::",
                         {"tools/vdbexport/", "framework/src/volume/", "tests/framework/scene_media_test.cpp",
                          "tests/tools/vdbexport_", "bench/"}};  // speed programs compare with it
 
 const Confined kSqlite{
-    "SQLite", "<sqlite3|\\bsqlite3_\\w+", {"framework/src/results/", "tests/framework/results_"}};
+    "SQLite", "<sqlite3|\\bsqlite3_\\w+", {"laboratory/src/results/", "tests/laboratory/results_"}};
 
-/// Pages are built from the files of framework/src/page/assets; no C++ writes markup.
+/// Pages are built from the files of laboratory/src/page/assets; no C++ writes markup.
 Violations markup(const Sources& sources) {
   Violations found;
   static const std::regex pattern(
       "</?(html|head|body|div|span|table|t[dhr]|p|h[1-6]|ul|li|img|canvas|style)[ >]");
   for (const SourceFile& source : sources) {
-    if (!isCpp(source.path) || (!startsWith(source.path, "framework/") && !startsWith(source.path, "tools/")))
-      continue;
+    if (!isCpp(source.path) || (partOf(source.path).empty() && !startsWith(source.path, "tools/"))) continue;
     std::istringstream lines(withoutComments(source.text, Strings::keep));
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -249,11 +264,11 @@ static std::regex namePattern(const std::string& technique) {
   return std::regex("\\b(" + technique + "|" + pascalCase(technique) + ")\\b");
 }
 
-/// The framework and the laboratory's tests of it know techniques only by what a text or a folder names.
+/// The framework and the laboratory know techniques only by what a text or a folder names.
 Violations namedTechniques(const Sources& sources, const std::vector<std::string>& techniques) {
   Violations found;
   for (const SourceFile& source : sources) {
-    if (!startsWith(source.path, "framework/") || !isCpp(source.path)) continue;
+    if (partOf(source.path).empty() || !isCpp(source.path)) continue;
     const std::string code = withoutComments(source.text, Strings::keep);  // a comment may give an example
     for (const std::string& technique : techniques)
       forEachMatch(code, namePattern(technique), [&](int line, const std::smatch& match) {
@@ -267,8 +282,6 @@ Violations namedTechniques(const Sources& sources, const std::vector<std::string
 /// its folder and common.
 Violations dependentTechniques(const Sources& sources, const std::vector<std::string>& techniques) {
   Violations found;
-  static const std::set<std::string> closedParts = {"reference", "measure",    "results", "analysis",
-                                                    "roofline",  "experiment", "page",    "stress"};
   for (const SourceFile& source : sources) {
     const bool shader = startsWith(source.path, "shaders/");
     if (!shader && !startsWith(source.path, "techniques/")) continue;
@@ -285,7 +298,7 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
             fmt::format("{}:{}: includes another technique: {}", source.path, include.line, include.path));
       if (startsWith(include.path, "lumivox/")) {
         const std::string part = include.path.substr(8, include.path.find('/', 8) - 8);
-        if (closedParts.count(part) != 0)
+        if (kLaboratory.contains(part))
           found.push_back(
               fmt::format("{}:{}: a technique may not include {}", source.path, include.line, part));
       }

@@ -21,7 +21,7 @@ namespace {
 /// purpose.
 std::vector<fs::path> committedPipelines() {
   std::vector<fs::path> files;
-  for (const char* folder : {"scenes", "docs", "techniques", "tools", "bench", "framework"})
+  for (const char* folder : {"scenes", "docs", "techniques", "tools", "bench", "framework", "laboratory"})
     for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
       if (entry.path().extension() == ".pipeline") files.push_back(fs::weakly_canonical(entry.path()));
   std::sort(files.begin(), files.end());

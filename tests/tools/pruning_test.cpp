@@ -41,8 +41,8 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
   options.height = 32;
   const std::map<std::string, double> small{{"resolution", 32}, {"area_samples", 4}, {"surfaces", 16},
                                             {"iterations", 8},  {"samples", 25},     {"cones", 2},
-                                            {"rays", 4},        {"elements", 512},   {"bins", 2},
-                                            {"points", 128},    {"lights", 64}};
+                                            {"rays", 4},        {"elements", 96},    {"bins", 2},
+                                            {"points", 128},    {"lights", 64},      {"density", 1}};
   for (const PipelineParameter& parameter : pipeline.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = std::min(parameter.value.number, value->second);
@@ -174,12 +174,18 @@ TEST_CASE("leaving out passes and variants gives the bit-identical image on ever
 
 namespace {
 
+/// The two largest scenes are one model, and share the pipelines between them.
+const std::map<std::string, Pipelines> kHalves{{"sponza_crytek", Pipelines::odd},
+                                               {"sponza_thesis", Pipelines::even}};
+
 /// A sixteenth of the scenes with well-known models and their pipelines: large models take most of the time,
 /// so that each of eight groups of scenes has one of them, and goes through half of the pipelines.
 void checkWellKnown(std::size_t part) {
   constexpr std::size_t kGroups = 8;
   checkPart(wellKnownScenes(), (part + 1) / 2, kGroups, [part](const std::filesystem::path& file) {
-    checkSameImageThrough(part % 2 == 1 ? Pipelines::odd : Pipelines::even, file);
+    const Pipelines which = part % 2 == 1 ? Pipelines::odd : Pipelines::even;
+    const auto half = kHalves.find(file.stem().string());
+    if (half == kHalves.end() || half->second == which) checkSameImageThrough(which, file);
   });
 }
 

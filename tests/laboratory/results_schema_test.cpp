@@ -47,7 +47,7 @@ const std::string kWithout4 =
 /// A store as an earlier version left it.
 std::filesystem::path oldStore(const TemporaryDirectory& directory) {
   const auto file = directory.path() / "old.sqlite";
-  execute(file, readFile(sourceDirectory() / "tests/framework/data/results_schema_1.sql"));
+  execute(file, readFile(sourceDirectory() / "tests/laboratory/data/results_schema_1.sql"));
   return file;
 }
 

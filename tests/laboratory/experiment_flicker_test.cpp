@@ -6,7 +6,7 @@
 #include "lumivox/base/random.h"
 #include "lumivox/results/json.h"
 #include "lumivox/results/store.h"
-#include "pipeline_toys.h"
+#include "framework/pipeline_toys.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

@@ -8,7 +8,7 @@
 #include "experiment/measure.h"
 #include "experiment/turns.h"
 #include "lumivox/analysis/slopes.h"
-#include "pipeline_toys.h"
+#include "framework/pipeline_toys.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
