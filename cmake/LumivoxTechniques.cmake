@@ -31,7 +31,7 @@ function(lumivox_add_shaders name)
   add_custom_target(shaders_${name} DEPENDS ${pack} ${header})
 endfunction()
 
-# lumivox_add_technique(NAME [LIBRARIES libraries...]): the shared library of techniques/NAME/*.cpp, when shaders/NAME exists its shaders, and
+# lumivox_add_technique(NAME [LIBRARIES libraries...]): the shared library of techniques/NAME/*.cpp and of its sub-folders, when shaders/NAME exists its shaders, and
 # beside both the paper card NAME.md, which explains where the technique breaks; installed where the program seeks techniques.
 # Target: technique_NAME.
 function(lumivox_add_technique name)
@@ -39,7 +39,7 @@ function(lumivox_add_technique name)
   set(folder ${PROJECT_SOURCE_DIR}/techniques/${name})
   set(built ${PROJECT_BINARY_DIR}/lib/techniques)
   set(installed lib/lumivox/techniques)
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   if(NOT sources)
     message(FATAL_ERROR "lumivox_add_technique(${name}): there is no source ${folder}/*.cpp")
   endif()

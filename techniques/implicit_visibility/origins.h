@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lumivox/scene/atlas.h"
-#include "lumivox/scene/element_tree.h"
+#include "elements/element_tree.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox::implicit_visibility {
