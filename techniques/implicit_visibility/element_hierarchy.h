@@ -18,8 +18,8 @@ struct ElementHierarchy {
 class ElementWords {
  public:
   explicit ElementWords(Pass* pass);
-  /// Made once a run and kept. `asPublished`: of vertices, in islands.
-  ElementHierarchy made(PassContext& frame, bool asPublished) const;
+  /// Made once a run and kept.
+  ElementHierarchy made(PassContext& frame) const;
 
  private:
   Param<Source> source_;
