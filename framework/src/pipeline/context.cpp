@@ -36,8 +36,8 @@ gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& 
   return buffer;
 }
 
-void FrameContext::checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck judge) {
-  pendingChecks_.push_back({passName_, std::move(counts), offsetBytes, std::move(judge)});
+void FrameContext::checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) {
+  pendingChecks_.push_back({passName_, std::move(counts), offsetBytes, std::move(check)});
 }
 
 bool FrameContext::allHadRoom() {
@@ -50,7 +50,7 @@ bool FrameContext::allHadRoom() {
     try {
       std::uint32_t count = 0;
       std::memcpy(&count, one.counts->download(one.offsetBytes, sizeof(count)).data(), sizeof(count));
-      if (one.judge(*this, count)) continue;
+      if (one.check(*this, count)) continue;
       enough = false;
       if (attempts_ == kMostAttempts)
         throw Error(fmt::format("no room for its count ({}) after {} attempts", count, kMostAttempts));

@@ -465,12 +465,12 @@ class PassContext {
   /// Resources from the pool: contents are undefined. They return to the pool when the last reference goes.
   virtual gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) = 0;
   virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
-  /// Has a count that the device finds judged without any pass waiting for it: one word of a buffer, read
-  /// when the device has done the whole frame. `judge` returns false when the pass had taken too little room
+  /// Has a count that the device finds checked without any pass waiting for it: one word of a buffer, read
+  /// when the device has done the whole frame. `check` returns false when the pass had taken too little room
   /// for what it counts, and notes how much it needs; the frame is then rendered again from nothing before
   /// anything of it is given out. It may throw an Error and warn() through the context that it is given.
   using CountCheck = std::function<bool(PassContext& frame, std::uint32_t count)>;
-  virtual void checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck judge) = 0;
+  virtual void checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) = 0;
   /// A warning to the user, once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
   /// A result that is made once and kept while it stays valid: that of make(), or of an earlier frame with
