@@ -118,7 +118,7 @@ const std::map<std::string, int> kWidelyIncluding{
     {"shaders/voxel_cone_tracing/clipmap/clipmap_filter.comp", 11},
     {"shaders/voxel_cone_tracing/cones/bounce.comp", 27},
     {"shaders/voxel_cone_tracing/cones/gather.comp", 20},
-    {"shaders/voxel_cone_tracing/cones/lens.comp", 19},
+    {"shaders/voxel_cone_tracing/views/lens.comp", 19},
     {"shaders/voxel_cone_tracing/cones/soft_shadows.comp", 21},
     {"shaders/voxel_cone_tracing/dense/inject.comp", 18},
     {"shaders/voxel_cone_tracing/dense/inject_as_published.comp", 12},

@@ -1,8 +1,8 @@
 // What a camera with a thin lens sees of a store: Crassin et al. 2011; thesis Gomes 2015, Sec. 2.4, Fig. 16.
+#include "../cones/march.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/media.h"
-#include "march.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {

@@ -2,7 +2,7 @@
 // What the camera sees of a store through a thin lens, a cone a pixel: Crassin et al. 2011; thesis 004 Sec. 2.4, Fig. 16; Amanatides 1984.
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
-#include "surfaces.glsl"
+#include "../cones/surfaces.glsl"
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
