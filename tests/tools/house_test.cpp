@@ -319,6 +319,14 @@ TEST_CASE("the scanner finds inputs that are read without a look at what tells h
   CHECK(unheededMembers({header, {"techniques/glow/glow.cpp", "use(light_->unit);"}}, kinds, {}).size() == 1);
   CHECK_NONE(
       unheededMembers({header, {"techniques/glow/glow.cpp", "readLight(light_, 1);"}, toolkit}, kinds, {}));
+  // In a chapter, with a function of another one.
+  const SourceFile chapter{"techniques/glow/part/dim.cpp",
+                           "class Dim : public Pass {\n  In<Light> light{this, \"light\"};\n"
+                           "  void run() { first(light); }\n};\n"};
+  CHECK(unheededMembers({chapter}, kinds, {}).size() == 2);
+  CHECK_NONE(unheededMembers(
+      {chapter, {"techniques/glow/more/a.cpp", "float first(const Light& a) { return a.unit + a.readFor; }"}},
+      kinds, {}));
   // Exceptions, each of which must be needed.
   const std::set<std::string> exception{"techniques/glow/glow.cpp: light"};
   CHECK_NONE(found("use(light->levels);", "", exception));
