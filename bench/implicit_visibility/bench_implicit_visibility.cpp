@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "../../techniques/implicit_visibility/links/element_light.h"
+#include "../../techniques/implicit_visibility/links/element_links.h"
 #include "../timed_pipelines.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/ports.h"
@@ -23,6 +25,7 @@
 namespace {
 
 using namespace lumivox;
+using namespace lumivox::implicit_visibility;
 
 // Links alone: by the hierarchy as it is by default, with one bin an element, and of all pairs.
 constexpr const char* kLinks = R"(

@@ -12,14 +12,15 @@
 #include <string_view>
 #include <vector>
 
+#include "../../techniques/virtual_area_lights/points/surface_points.h"
 #include "../timed_pipelines.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
-#include "lumivox/scene/surface_points.h"
 
 namespace {
 
 using namespace lumivox;
+using namespace lumivox::virtual_area_lights;
 
 // Sparse points beside every light at every pixel, from the same lights.
 constexpr const char* kBoth = R"(

@@ -2,7 +2,7 @@
 #ifndef LUMIVOX_OUTGOING
 #define LUMIVOX_OUTGOING
 #include "nodes.glsl"
-#include "common/direction_bins.glsl"
+#include "direction_bins.glsl"
 
 const uint kNoRow = 0xffffffffu;
 layout(std140, binding = 4) uniform Outgoing {

@@ -2,7 +2,7 @@
 // Dong et al. 2007, Sec. 4.3, step 10, for radiance by direction: that of a node is the mean of its children by the area that they show in the
 // direction. What turns its front that way hides the backs behind it.
 #include "nodes.glsl"
-#include "common/direction_bins.glsl"
+#include "direction_bins.glsl"
 
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

@@ -16,7 +16,7 @@
 #include "leaf_points.glsl"
 #endif
 #if !OUTGOING
-#include "common/direction_bins.glsl"
+#include "direction_bins.glsl"
 #endif
 
 // The invocations of a group have a direction of one leaf each, and look up together what arrives there.

@@ -2,7 +2,7 @@
 #ifndef LUMIVOX_INTERPOLATE
 #define LUMIVOX_INTERPOLATE
 #define POINT_CANDIDATES
-#include "common/surface_points.glsl"
+#include "surface_points.glsl"
 #include "light.glsl"
 
 const int kMostNeighbours = 32;  // of the pass 'points'

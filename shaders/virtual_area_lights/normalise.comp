@@ -5,7 +5,7 @@
 #pragma lumivox axis PUBLISHED 0 1
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
-#include "common/surface_points.glsl"
+#include "surface_points.glsl"
 #include "light.glsl"
 
 layout(std140, binding = 0) uniform Parameters {

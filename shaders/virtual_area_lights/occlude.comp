@@ -3,7 +3,7 @@
 #pragma lumivox axis COMBINE product sum nearest mask
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
-#include "common/surface_points.glsl"
+#include "surface_points.glsl"
 #include "discs.glsl"
 #include "squares.glsl"
 

@@ -47,11 +47,11 @@ class Marching : public Pass {
   Param<Reading> reading{
       this, "reading", Reading::nearest,
       "of the volume at a step: the voxel there; or all eight around, of which half must be occupied"};
-  Param<Walk> walk{this, "walk", Walk::steps,
-                   "a look at every step, as published; or every voxel on the way, by 'bits'"};
+  Param<Walk> walk{this, "walk", Walk::steps, "a look at every step; or every voxel on the way, by 'bits'"};
   Param<Exit> exit{
       this, "exit", Exit::early,
-      "at the first voxel that is met; or, as published (Sec. 4.1), at the end of the volume, and what lies behind is discarded: the same bits"};
+      "at the first voxel that is met; or (Sec. 4.1) at the end of the volume, and what lies behind is discarded: the same bits",
+      published(Exit::branchless)};
   Param<Directions> directions{this, "directions", Directions::voxel,
                                "a set of its own for each voxel: noise; or one for all: no noise but bands"};
   Param<float> occupied{
@@ -174,11 +174,13 @@ class MarchPass : public Marching {
                                "and one bounce"};
   Param<Source> source{
       this, "source", Source::surface,
-      "what a ray finds in a voxel: the side of the surface that it sees, exact for a Lambert wall; or, as published, two bands, 1/2 + 3/4 cos in place of 1"};
+      "what a ray finds in a voxel: the side of the surface that it sees, exact for a Lambert wall; or two bands, 1/2 + 3/4 cos in place of 1",
+      published(Source::harmonics)};
   Param<int> bounces{this, "bounces", 1, within(1, 1024), "times that light was reflected"};
   Param<Feed> feed{
       this, "feed", Feed::front,
-      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients; or, as published (Sec. 3.3), two buffers alternate: what arrives in a voxel is what it sends by 'source harmonics', whatever its albedo, and the last one is all that is read"};
+      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients; or (Sec. 3.3) two buffers alternate: what arrives in a voxel is what it sends by 'source harmonics', whatever its albedo, and the last one is all that is read",
+      published(Feed::printed)};
   Out<ShGrid> incoming{this, "incoming", Contributes::nothing, Needs::anyLight,
                        "radiance that arrives in each voxel from all sides, of all bounces"};
 

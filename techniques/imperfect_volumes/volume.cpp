@@ -56,8 +56,8 @@ Neighbours::Neighbours(Pass* pass)
              "of a surface point along its normal before it reads, in voxels"),
       blend_(
           pass, "blend", Blend::free,
-          "which neighbours count: only those that are free and open to the surface, where there are any; or all, as published, of which occupied ones are dark") {
-}
+          "which neighbours count: only those that are free and open to the surface, where there are any; or all, of which occupied ones are dark",
+          published(Blend::all)) {}
 
 std::string Neighbours::inWords() const {
   return fmt::format("'voxels {}', 'filter {}' and 'shift {}'", voxels_.valueText(), filter_.valueText(),

@@ -42,12 +42,14 @@ class DisplayPass : public Pass {
   Param<Interpolate> interpolate{
       this, "interpolate", Interpolate::neighbours,
       "which elements a pixel shows; neighbours: those around what is seen there; vertices: those at the "
-      "corners of its triangle, with 'source vertices' alone (published). What a lobe at pixels sees is always "
-      "that of neighbours"};
+      "corners of its triangle, with 'source vertices' alone. What a lobe at pixels sees is always that of "
+      "neighbours",
+      published(Interpolate::vertices)};
   Param<Lobe> lobe{
       this, "lobe", Lobe::pixel,
       "where the Phong lobe is held against the bins; pixel: with the normal and material of what is "
-      "seen; element: with those of elements (published)"};
+      "seen; element: with those of elements",
+      published(Lobe::element)};
   Param<float> distance{
       this,
       "distance",
@@ -56,7 +58,6 @@ class DisplayPass : public Pass {
       "m",
       "of 'occlusion': within which elements occlude; 0: a tenth of the diagonal of the scene's "
       "bounds, as in the reference"};
-  Param<bool> asPublished{this, "as_published", false, "'interpolate vertices' and 'lobe element'"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -135,8 +136,7 @@ class DisplayPass : public Pass {
              const Image& added, float empty = 0.0f) const {
     using display::Variant;
     Image result{frame.image("values of elements")};
-    const bool overTriangles =
-        of != Variant::ofSegments && (asPublished || interpolate == Interpolate::vertices);
+    const bool overTriangles = of != Variant::ofSegments && interpolate == Interpolate::vertices;
     shader::BindingSet bound{common, display::added(added.texture, gpu::Sampling::nearest),
                              display::shownImage(result.texture)};
     Image interpolated;
@@ -166,7 +166,7 @@ class DisplayPass : public Pass {
         sentRadiance(radiance, gpu::Sampling::nearest),
         OutgoingBinding(outgoing, light->outgoingRows, light->directions)};
     const bool passedOn = outgoing != nullptr;
-    if (lobe == Lobe::pixel && !asPublished) {
+    if (lobe == Lobe::pixel) {
       const int most = std::clamp(kLoopLimit / (12 * links->bins * links->bins), 1, 4);
       Image result{frame.image("glossy radiance")};
       frame.dispatch(frame.program(Variant{.at = Variant::atPixel,

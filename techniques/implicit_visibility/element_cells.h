@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lumivox/scene/element_tree.h"
+#include "elements/element_tree.h"
 
 namespace lumivox::implicit_visibility {
 

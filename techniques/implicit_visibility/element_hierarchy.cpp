@@ -11,10 +11,12 @@ namespace lumivox::implicit_visibility {
 ElementWords::ElementWords(Pass* pass)
     : source_(pass, "source", Source::atlas,
               "atlas: elements of one size on each object, whatever its triangles; vertices: one for each "
-              "loaded vertex (published)"),
+              "loaded vertex",
+              published(Source::vertices)),
       segments_(pass, "segments", Segments::charts,
                 "what a tree stands on; charts: connected pieces within 45 degrees; uv: islands of the "
-                "texture coordinates (published)"),
+                "texture coordinates",
+                published(Segments::uv)),
       elements_(pass, "elements", 4096, within(16, 1048576), "about how many leaves, with source atlas"),
       share_(pass, "share", 0.5f, within(0.0f, 1.0f),
              "an object's part of the elements goes by this power of its area") {}
@@ -60,21 +62,20 @@ SurfaceElements upload(PassContext& frame, const Forest& forest) {
 
 class HierarchyPass : public Pass {
   ElementWords words{this};
-  Param<bool> asPublished{this, "as_published", false, "'source vertices' and 'segments uv'"};
   Out<ElementHierarchy> result{this, "hierarchy", "trees of elements, for `elements`"};
 
   Reads readsFrom() const override { return Reads::materials; }
   bool worksOnHost() const override { return true; }
 
-  void run(PassContext& frame) override { result = words.made(frame, asPublished); }
+  void run(PassContext& frame) override { result = words.made(frame); }
 };
 
 }  // namespace
 
-ElementHierarchy ElementWords::made(PassContext& frame, bool asPublished) const {
+ElementHierarchy ElementWords::made(PassContext& frame) const {
   const auto forest = frame.kept("hierarchy of elements", 0, [&] {
-    return plant(frame, {.source = asPublished ? Source::vertices : Source(source_),
-                         .segments = asPublished ? Segments::uv : Segments(segments_),
+    return plant(frame, {.source = source_,
+                         .segments = segments_,
                          .elements = static_cast<double>(static_cast<int>(elements_)),
                          .share = static_cast<double>(static_cast<float>(share_))});
   });

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "elements/surface_elements.h"
 #include "forest.h"
 #include "lumivox/plugin/technique.h"
 
@@ -18,8 +19,8 @@ struct ElementHierarchy {
 class ElementWords {
  public:
   explicit ElementWords(Pass* pass);
-  /// Made once a run and kept. `asPublished`: of vertices, in islands.
-  ElementHierarchy made(PassContext& frame, bool asPublished) const;
+  /// Made once a run and kept.
+  ElementHierarchy made(PassContext& frame) const;
 
  private:
   Param<Source> source_;

@@ -11,18 +11,18 @@ class ElementsPass : public Pass {
       "trees that the pass `hierarchy` made: 'source', 'segments', 'elements' and 'share' have no say then"};
   ElementWords words{this};
   Param<Areas> areas{this, "areas", Areas::now,
-                     "now: areas follow stretching; rest: they stay those of the scene at rest (published)"};
-  Param<bool> asPublished{this, "as_published", false, "'source vertices', 'segments uv' and 'areas rest'"};
+                     "now: areas follow stretching; rest: they stay those of the scene at rest",
+                     published(Areas::rest)};
   Out<SurfaceElements> result{this, "elements", "the surface as discs, and trees of them"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials; }
   bool worksOnHost() const override { return true; }
 
   void run(PassContext& frame) override {
-    const ElementHierarchy made = hierarchy ? *hierarchy : words.made(frame, asPublished);
+    const ElementHierarchy made = hierarchy ? *hierarchy : words.made(frame);
     SurfaceElements elementsNow = made.fixed;
-    elementsNow.state = std::make_shared<const ElementState>(stateOf(
-        *made.forest, frame.sceneDescription(), frame.snapshot(), asPublished ? Areas::rest : Areas(areas)));
+    elementsNow.state = std::make_shared<const ElementState>(
+        stateOf(*made.forest, frame.sceneDescription(), frame.snapshot(), areas));
     const ElementState& state = *elementsNow.state;
     std::vector<glm::vec4> positions, normals;
     for (std::size_t node = 0; node < state.position.size(); ++node) {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "lumivox/scene/element_tree.h"
+#include "elements/element_tree.h"
 #include "origins.h"
 
 namespace lumivox::implicit_visibility {

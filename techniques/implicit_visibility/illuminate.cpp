@@ -49,33 +49,39 @@ class IlluminatePass : public Pass {
                      "environment"};
   Param<Weight> weight{this, "weight", Weight::bin,
                        "of a link; bin: the projected solid angle of its bin, those of a side being pi; "
-                       "element: A cos cos / r^2 of the element (published)"};
+                       "element: A cos cos / r^2 of the element",
+                       published(Weight::element)};
   Param<AreaLight> areaLight{this, "area_light", AreaLight::shadow,
                              "what brings the light of surfaces that shine; shadow: samples with shadow "
-                             "maps; links: links to elements that shine (published)"};
+                             "maps; links: links to elements that shine",
+                             published(AreaLight::links)};
   Param<int> lightSamples{
-      this, "light_samples", 4, within(1, 32),
-      "points along a side of an element at which lights and their visibility are asked for"};
+      this,
+      "light_samples",
+      4,
+      within(1, 32),
+      "points along a side of an element at which lights and their visibility are asked for",
+      published(1)};
   Param<bool> lightLists{
       this, "light_lists", true,
       "with 'area_light links': only links to what shines are looked at; off: all: the same "
       "bits"};
-  Param<bool> asPublished{this, "as_published", false,
-                          "'weight element', 'area_light links', 'light_samples 1' and 'directions 0'"};
   Param<int> directions{
-      this, "directions", 4, within(0, 16),
+      this,
+      "directions",
+      4,
+      within(0, 16),
       "along a side of a face of the cube of directions in which glossy elements pass on what "
-      "their Phong lobes reflect; 0: they pass on diffuse light alone"};
+      "their Phong lobes reflect; 0: they pass on diffuse light alone, as in published results (Sec. 5)",
+      published(0)};
   Out<ElementLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                           "light at elements, on both sides"};
 
   Reads readsFrom() const override { return Reads::environment; }
   int indirectBounces() const override { return bounces; }
 
-  bool weighsElements() const { return asPublished || weight == Weight::element; }
-  bool linksToLights() const { return asPublished || areaLight == AreaLight::links; }
-  /// Published results have diffuse light between surfaces alone (Sec. 5).
-  int directionsPassedOn() const { return asPublished ? 0 : int(directions); }
+  bool weighsElements() const { return weight == Weight::element; }
+  bool linksToLights() const { return areaLight == AreaLight::links; }
 
   void run(PassContext& frame) override {
     ElementLight result;
@@ -87,13 +93,13 @@ class IlluminatePass : public Pass {
       result.directIrradiance = emptyTexels(frame, leafTexels, "irradiance of elements by what shines");
     }
     std::shared_ptr<const OutgoingRows> rows;
-    if (directionsPassedOn() > 0 && elements->specular != nullptr) {
+    if (directions > 0 && elements->specular != nullptr) {
       rows = frame.kept("rows of glossy elements", elements->tree,
                         [&] { return outgoingRows(frame, *elements->tree); });
-      result.outgoing = emptyTexels(frame, outgoingTexels(*rows, directionsPassedOn()),
-                                    "radiance of glossy elements by direction");
+      result.outgoing =
+          emptyTexels(frame, outgoingTexels(*rows, directions), "radiance of glossy elements by direction");
       result.outgoingRows = rows->ofNodes;
-      result.directions = directionsPassedOn();
+      result.directions = directions;
     }
     if (elements->leafCount > 0) illuminate(frame, result, rows.get());
     light = result;
@@ -106,7 +112,7 @@ class IlluminatePass : public Pass {
   Sent empty(PassContext& frame, const OutgoingRows* rows, const std::string& what) const {
     Sent sent{emptyTexels(frame, ElementLight::radianceTexels(*elements), what), nullptr};
     if (rows != nullptr)
-      sent.outgoing = emptyTexels(frame, outgoingTexels(*rows, directionsPassedOn()), what + " by direction");
+      sent.outgoing = emptyTexels(frame, outgoingTexels(*rows, directions), what + " by direction");
     return sent;
   }
 
@@ -161,7 +167,7 @@ class IlluminatePass : public Pass {
     frame.dispatchList(frame.program(
                            light_leaves::Variant{
                                .lights = lit, .shadows = lit, .linked = result.directIrradiance != nullptr},
-                           light_leaves::Constants{.samplesPerSide = asPublished ? 1 : int(lightSamples)}),
+                           light_leaves::Constants{.samplesPerSide = lightSamples}),
                        {common, lights, light_leaves::directLight({count}),
                         light_leaves::albedos(elements->albedo, gpu::Sampling::nearest),
                         light_leaves::arrivingFromLights(result.directIrradiance, gpu::Sampling::nearest),
@@ -177,7 +183,7 @@ class IlluminatePass : public Pass {
                              illuminate::illumination({frame.sceneDescription().environment}),
                              illuminate::lights(links->lights),
                              illuminate::sentRadiance(sent.radiance, gpu::Sampling::nearest),
-                             OutgoingBinding(sent.outgoing, result.outgoingRows, directionsPassedOn()),
+                             OutgoingBinding(sent.outgoing, result.outgoingRows, directions),
                              illuminate::albedos(elements->albedo, gpu::Sampling::nearest),
                              illuminate::irradianceImage(irradiance),
                              illuminate::reflectedImage(reflected),
@@ -195,7 +201,7 @@ class IlluminatePass : public Pass {
     const int count = lightCount(frame, lights);
     if (count > 0)
       reflect(frame, rows, Variant{.of = Variant::ofLights}, {.sums = true, .samplesPerSide = lightSamples},
-              count, {common, lights}, directionsPassedOn(), result, outgoing);
+              count, {common, lights}, directions, result, outgoing);
     if (result.emission)
       reflectLinks(frame, common, rows, {}, {.adds = true}, {result.emission, nullptr}, result, outgoing);
     pullUpOutgoing(frame, common, rows, result.radiance, outgoing);
@@ -208,20 +214,20 @@ class IlluminatePass : public Pass {
     constants.sums = constants.addsToSum = true;
     reflect(frame, rows, variant, constants, 6 * links->bins * links->bins,
             {common, reflect_glossy::sentRadiance(sent.radiance, gpu::Sampling::nearest),
-             OutgoingBinding(sent.outgoing, result.outgoingRows, directionsPassedOn())},
-            std::min<int>(links->bins, 2 * directionsPassedOn()), result, outgoing);
+             OutgoingBinding(sent.outgoing, result.outgoingRows, directions)},
+            std::min<int>(links->bins, 2 * directions), result, outgoing);
   }
 
   void reflect(PassContext& frame, const OutgoingRows& rows, const reflect_glossy::Variant& variant,
                const reflect_glossy::Constants& constants, int arrivals, const shader::BindingSet& bound,
                int resolving, const ElementLight& result, const gpu::TextureRef& outgoing) const {
     if (rows.leaves == 0) return;
-    const auto all = static_cast<std::uint64_t>(6 * directionsPassedOn() * directionsPassedOn());
+    const auto all = static_cast<std::uint64_t>(6 * directions * directions);
     frame.dispatchList(
         frame.program(variant, constants),
         {bound,
-         reflect_glossy::reflection({frame.sceneDescription().environment, rows.leaves, directionsPassedOn(),
-                                     arrivals, static_cast<float>(resolvedExponent(resolving))}),
+         reflect_glossy::reflection({frame.sceneDescription().environment, rows.leaves, directions, arrivals,
+                                     static_cast<float>(resolvedExponent(resolving))}),
          reflect_glossy::outgoingNodes(rows.nodes),
          reflect_glossy::speculars(elements->specular, gpu::Sampling::nearest),
          reflect_glossy::outgoingImage(outgoing), reflect_glossy::sumImage(result.outgoing)},
@@ -236,13 +242,11 @@ class IlluminatePass : public Pass {
     for (const ElementTree::Run& level : rows.levels)
       frame.dispatchList(
           frame.program(kProgram),
-          {common,
-           outgoingRun({static_cast<int>(level.first), static_cast<int>(level.count), directionsPassedOn()}),
+          {common, outgoingRun({static_cast<int>(level.first), static_cast<int>(level.count), directions}),
            pull_up_outgoing::children(elements->children), outgoingNodes(rows.nodes),
            pull_up_outgoing::outgoingRows(rows.ofNodes), pulledUp(radiance, gpu::Sampling::nearest),
            outgoingImage(outgoing)},
-          static_cast<std::uint64_t>(level.count) *
-              static_cast<std::uint64_t>(6 * directionsPassedOn() * directionsPassedOn()));
+          static_cast<std::uint64_t>(level.count) * static_cast<std::uint64_t>(6 * directions * directions));
   }
 
   /// For each link how many of its leaf's lead to the same node, which counts once.

@@ -40,15 +40,17 @@ class CreateLinksPass : public Pass {
       "hierarchy: pairs of nodes, split until they are as small as a bin; all_pairs: every element with "
       "every other one"};
   Param<int> bins{this, "bins", 8, within(1, 64), "bins along a side of a face of the cube of directions"};
-  Param<BinMapping> mapping{
-      this, "mapping", BinMapping::even,
-      "even: bins of nearly equal solid angles; uniform: equal steps on the face (published)"};
+  Param<BinMapping> mapping{this, "mapping", BinMapping::even,
+                            "even: bins of nearly equal solid angles; uniform: equal steps on the face",
+                            published(BinMapping::uniform)};
   // Which surface a bin holds is told by leaves, whatever the node: 2 costs 0.4 to 0.9 % of the light, and
   // less time.
-  Param<float> split{
-      this, "split", 2.0f, within(0.0f, 64.0f),
-      "how many bins a node may cover before it is split (published: 1); 0: all are, down to the leaves"};
-  Param<bool> asPublished{this, "as_published", false, "'mapping uniform' and 'split 1'"};
+  Param<float> split{this,
+                     "split",
+                     2.0f,
+                     within(0.0f, 64.0f),
+                     "how many bins a node may cover before it is split; 0: all are, down to the leaves",
+                     published(1.0f)};
   Out<ElementLinks> result{this, "links", "pairs of nodes that may exchange light"};
 
   bool worksOnHost() const override { return true; }
@@ -56,12 +58,12 @@ class CreateLinksPass : public Pass {
   void run(PassContext& frame) override {
     ElementLinks links;
     links.bins = bins;
-    links.mapping = asPublished ? BinMapping::uniform : BinMapping(mapping);
+    links.mapping = mapping;
     const ElementTree& tree = *elements->tree;
     // Finding pairs of so many takes minutes: what their links need is asked for at once.
     requireRoomForLinks(frame, tree, DirectionBins(bins, links.mapping));
     if (method == Method::hierarchy) {
-      const PairSettings settings{DirectionBins(bins, links.mapping), asPublished ? 1.0f : float(split)};
+      const PairSettings settings{DirectionBins(bins, links.mapping), split};
       const auto find = [&](bool moving) {
         return std::make_shared<const ElementLists<std::uint32_t>>(
             findPartners(tree, *elements->state, settings, moving));
@@ -114,13 +116,13 @@ class PushLinksPass : public Pass {
   In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
   Param<Fill> fill{
       this, "fill", Fill::centre,
-      "centre: an element takes the bins whose middle ray meets its outline; one: the one bin of its middle "
-      "(published)"};
+      "centre: an element takes the bins whose middle ray meets its outline; one: the one bin of its middle",
+      published(Fill::one)};
   Param<Push> push{
       this, "push", Push::rebinned,
       "rebinned: links of inner nodes are seen anew from the leaf; kept: in the bin and at the distance of "
-      "the node (published)"};
-  Param<bool> asPublished{this, "as_published", false, "'fill one' and 'push kept'"};
+      "the node",
+      published(Push::kept)};
   Out<ElementLinks> result{this, "links", "what each leaf sees, bin by bin"};
 
   bool worksOnHost() const override { return true; }
@@ -131,8 +133,7 @@ class PushLinksPass : public Pass {
     requireRoomForLinks(frame, tree, bins);
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
-    const Lookout lookout(tree, *elements->state, *finder, asPublished ? Fill::one : Fill(fill),
-                          asPublished ? Push::kept : Push(push));
+    const Lookout lookout(tree, *elements->state, *finder, fill, push);
     // What is clearly too much is refused before it is looked for, which takes minutes.
     constexpr std::uint32_t kMany = 16384;
     if (tree.leafCount > kMany) {

@@ -1,7 +1,7 @@
 // What all leaves see: links of inner nodes pushed down to them (Dong et al. 2007, Sec. 4.2.3 and 4.2.4).
 #pragma once
 
-#include "lumivox/pipeline/ports/element_links.h"
+#include "links/element_links.h"
 #include "sight.h"
 
 namespace lumivox::implicit_visibility {

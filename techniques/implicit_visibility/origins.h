@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "elements/element_tree.h"
 #include "lumivox/scene/atlas.h"
-#include "lumivox/scene/element_tree.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox::implicit_visibility {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "lumivox/pipeline/ports/element_links.h"
+#include "links/element_links.h"
 
 namespace lumivox::implicit_visibility {
 

@@ -1,6 +1,9 @@
 // The technique's passes, file by file.
 #pragma once
 
+#include "elements/surface_elements.h"
+#include "links/element_light.h"
+#include "links/element_links.h"
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::implicit_visibility {

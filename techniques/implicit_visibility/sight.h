@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "lumivox/scene/direction_bins.h"
-#include "lumivox/scene/element_tree.h"
+#include "elements/element_tree.h"
+#include "links/direction_bins.h"
 
 namespace lumivox::implicit_visibility {
 

@@ -38,19 +38,20 @@ class GatherPass : public Pass {
       "of the radiance before the albedo, an artistic choice (Listing 4.36); 1 conserves energy"};
   Param<Negative> negative{
       this, "negative", Negative::closure,
-      "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off"};
+      "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off",
+      published(Negative::clip)};
   Param<Lookup> lookup{
       this, "lookup", Lookup::reachable,
-      "cells that can be reached from the surface, at the offset; or, as published (Listing 4.35), filtered at the surface whatever lies between, half a cell too low along z"};
+      "cells that can be reached from the surface, at the offset; or (Listing 4.35) filtered at the surface whatever lies between, half a cell too low along z",
+      published(Lookup::filtered)};
   Param<Lobe> lobe{
       this, "lobe", Lobe::arriving,
-      "what counts is light that comes in; or, as published (Listing 4.35), the lobe around the normal itself, light per face of a cell"};
+      "what counts is light that comes in; or (Listing 4.35) the lobe around the normal itself, light per face of a cell",
+      published(Lobe::normal)};
   Param<Seam> seam{
       this, "seam", Seam::border,
-      "grids are blended before the finer one's border; or, as published (Listing 4.36), from 12/32 to 16/32 of its side around the eye"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "Listings 4.35 and 4.36: the printed settings of lookup, lobe, seam and negative; the exponent has no printed value"};
+      "grids are blended before the finer one's border; or (Listing 4.36) from 12/32 to 16/32 of its side around the eye",
+      published(Seam::radial)};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> clipped{
@@ -59,14 +60,14 @@ class GatherPass : public Pass {
 
   void run(PassContext& frame) override {
     const NestedGrids grids = fluxIn(light);
-    const bool filtered = asPublished || lookup == Lookup::filtered;
+    const bool filtered = lookup == Lookup::filtered;
     if (!filtered) requireFaces(grids, faces);
     diffuse = Image{frame.image("indirect diffuse radiance")};
     clipped = Image{frame.image("clipped radiance")};
     const gather::Constants constants{.filtered = filtered,
-                                      .closure = negative == Negative::closure && !asPublished,
-                                      .ownLobe = asPublished || lobe == Lobe::normal,
-                                      .radialBlend = asPublished || seam == Seam::radial};
+                                      .closure = negative == Negative::closure,
+                                      .ownLobe = lobe == Lobe::normal,
+                                      .radialBlend = seam == Seam::radial};
     forEachLevel(grids, [&](std::size_t i) {
       const ShGrid::Level& level = grids[i];
       const bool known = faces.present() && i < faces->levels.size();
@@ -109,8 +110,8 @@ class ReflectPass : public Pass {
   In<ShGrid> light{this, "light", "all light that passed each cell"};
   Param<float> fade{this, "fade", 0.0f, within(0.0f, 1024.0f),
                     "voxels before the border over which the grid fades out"};
-  Param<bool> asPublished{
-      this, "as_published", false,
+  PublishedForm asPublished{
+      this,
       "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye; in place of what crosses the face before a surface, and of fade"};
   Out<RadianceGrid> radiance{this,
                              "radiance",
@@ -176,8 +177,8 @@ class TracePass : public Pass {
       this, "reach", 0.0f, within(0.0f, 1e9f), "m", "of a cone; 0: the longest side of the grid"};
   Param<Fade> fade{
       this, "fade", Fade::falls,
-      "of samples along a cone: to nothing at its reach; or, as published (Listing 4.37), from nothing at its start; with both the whole reflection falls to nothing half a side of the grid from the eye"};
-  Param<bool> asPublished{this, "as_published", false, "Listing 4.37 to the letter: fade grows"};
+      "of samples along a cone: to nothing at its reach; or (Listing 4.37) from nothing at its start; with both the whole reflection falls to nothing half a side of the grid from the eye",
+      published(Fade::grows)};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
                     "indirect light reflected by the glossy lobe, W/(sr m^2)"};
 
@@ -189,7 +190,7 @@ class TracePass : public Pass {
     const GridPlacement place{
         grid->grid.low, grid->grid.voxelSize, {texture.width, texture.height, texture.depth}};
     const float side = longestSide(place);
-    const int fading = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
+    const int fading = fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
     glossy = Image{frame.image("indirect glossy radiance")};
     frame.dispatch(
         frame.program(trace::Variant{}, trace::Constants{.fade = fading}),

@@ -104,7 +104,8 @@ class Inject : public Pass {
       "m",  "side of the finest grid, around the camera; 0: as large as lets the coarsest hold the scene"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::forward,
-      "what a virtual light sends out: nothing backwards, or, as published, a clamped cosine, of which two bands let a seventh out at the back"};
+      "what a virtual light sends out: nothing backwards, or a clamped cosine, of which two bands let a seventh out at the back",
+      published(Lobe::cosine)};
   Out<ShGrid> light{this, "light", "virtual point lights, W/sr"};
   Out<OccludedFaces> faces{this, "faces", "the faces between the cells that surfaces occlude"};
 
@@ -172,18 +173,20 @@ class InjectVoxelsPass : public Inject {
 
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only the environment shines"};
-  Param<Albedo> albedo{this, "albedo", Albedo::mean, "of a voxel; as published: its most contrasting one"};
+  Param<Albedo> albedo{this, "albedo", Albedo::mean, "of a voxel: their mean, or its most contrasting one",
+                       published(Albedo::contrast)};
   Param<Normals> normals{this, "normals", Normals::all,
-                         "that a light reaches; as published: only the one closest to its direction"};
-  Param<Area> area{this, "area", Area::covered, "of a surface; as published: all of its voxel"};
+                         "that a light reaches, or only the one closest to its direction",
+                         published(Normals::closest)};
+  Param<Area> area{this, "area", Area::covered, "of a surface: what it covers, or all of its voxel",
+                   published(Area::whole)};
   Param<bool> twoSided{this, "two_sided", true,
-                       "light on the back of a triangle counts; off, as published: only the front"};
+                       "light on the back of a triangle counts; off: only on the front", published(false)};
   Param<Voxels> voxels{
       this, "voxels", Voxels::mean,
-      "what a voxel keeps of its surfaces: means, in the cells in front of them; or, as published (Listings 4.26 to 4.31), what wins an atomic maximum in the voxel that they lie in, lit at its centre: then lobe, albedo, normals, area and two_sided are the printed ones too"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "voxels packed, and no occluded faces: propagate and gather must be as published too"};
+      "what a voxel keeps of its surfaces: means, in the cells in front of them; or (Listings 4.26 to 4.31) what wins an atomic maximum in the voxel that they lie in, lit at its centre: then lobe, albedo, normals, area and two_sided are the printed ones too",
+      published(Voxels::packed)};
+  PublishedForm asPublished{this, "no occluded faces: propagate and gather must be as published too"};
 
   std::string checkParameters() const override {
     if (resolution > kLargestVoxelGrid)
@@ -199,7 +202,7 @@ class InjectVoxelsPass : public Inject {
   }
 
   bool findsFaces() const override { return !asPublished; }
-  bool packed() const { return asPublished || voxels == Voxels::packed; }
+  bool packed() const { return voxels == Voxels::packed; }
 
   void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) override {
     if (!packed()) return Inject::fillCells(frame, level, surfaces);

@@ -34,7 +34,8 @@ class PropagatePass : public Pass {
                         "steps from cell to cell; light that has not arrived then is lost"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::straight,
-      "flux continues in the direction in which it came, or, as published, leaves as a clamped cosine around the face"};
+      "flux continues in the direction in which it came, or leaves as a clamped cosine around the face",
+      published(Lobe::cosine)};
   Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
                              "factor of every step; 1 conserves energy"};
   Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
@@ -46,15 +47,16 @@ class PropagatePass : public Pass {
       "of computing the same; plain: face by face as in Listing 4.32, slow, and the only one of the published transfer and occlusion"};
   Param<Transfer> transfer{
       this, "transfer", Transfer::conserving,
-      "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration"};
+      "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration",
+      published(Transfer::published)};
   Param<Occlusion> occlusion{
       this, "occlusion", Occlusion::faces,
-      "by the occluded share of faces; or, as published (Listing 4.33), by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed"};
+      "by the occluded share of faces; or (Listing 4.33) by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed",
+      published(Occlusion::normals)};
   Param<Grids> grids{
       this, "grids", Grids::nested,
-      "light comes in from the next coarser grid and from the environment; or, as published, every grid is alone"};
-  Param<bool> asPublished{this, "as_published", false,
-                          "Listings 4.32 and 4.33: the printed settings of transfer, occlusion and grids"};
+      "light comes in from the next coarser grid and from the environment; or every grid is alone",
+      published(Grids::apart)};
   Out<ShGrid> light{this, "light", "all light that passed each cell, summed over the iterations, W/sr"};
   Out<ShGrid> travelling{this, "travelling", "light that is still on its way after the last iteration, W/sr"};
 
@@ -80,9 +82,9 @@ class PropagatePass : public Pass {
     travelling = left;
   }
 
-  bool publishedTransfer() const { return asPublished || transfer == Transfer::published; }
-  bool occludesByNormals() const { return asPublished || occlusion == Occlusion::normals; }
-  bool gridsApart() const { return asPublished || grids == Grids::apart; }
+  bool publishedTransfer() const { return transfer == Transfer::published; }
+  bool occludesByNormals() const { return occlusion == Occlusion::normals; }
+  bool gridsApart() const { return grids == Grids::apart; }
 
   Travelling start(PassContext& frame, const ShGrid::Level& level, const OccludedFaces::Level& surfaces,
                    const ShGrid::Level* outside, const Channels& sum) {

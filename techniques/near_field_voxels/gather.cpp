@@ -49,25 +49,29 @@ class GatherPass : public Pass {
                          "which of them send rays: all, or one of 2 x 2 or of 4 x 4"};
   RayMethod method{this};
   Param<Sequence> sequence{this, "sequence", Sequence::r2,
-                           "of directions: the R2 sequence, which frames that accumulate go on with, or, as "
-                           "published, Hammersley's points"};
+                           "of directions: the R2 sequence, which frames that accumulate go on with, or "
+                           "Hammersley's points",
+                           published(Sequence::hammersley)};
   Param<Rotation> rotation{
       this, "rotation", Rotation::hash,
-      "of the sequence: for each pixel by a hash; as published by a small tile of random numbers; or the same for all"};
+      "of the sequence: for each pixel by a hash; by a small tile of random numbers; or the same for all",
+      published(Rotation::tile)};
   Param<float> spread{this, "spread", 1.0f, within(0.0f, 1.0f),
                       "largest sine of a ray's angle to the normal, squared: below 1 the lobe narrows"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 100.0f),
                       "start of a ray along the geometric normal, in 'offset_unit'"};
   Param<OffsetUnit> offsetUnit{
       this, "offset_unit", OffsetUnit::plane,
-      "the distance beyond which no voxel lies that the surface's plane touches, and a sixteenth of a voxel; or, as published, the diagonal of a voxel"};
+      "the distance beyond which no voxel lies that the surface's plane touches, and a sixteenth of a voxel; or the diagonal of a voxel",
+      published(OffsetUnit::diagonal)};
   Param<float> start{this, "start", 0.0f, within(0.0f, 1000.0f),
                      "of a ray along its direction, in voxels behind the offset"};
   Param<float> radius{
       this, "radius", 0.0f, within(0.0f, 1e9f), "m", "how far light comes from; 0: from all of the grid"};
   Param<Beyond> beyond{
       this, "beyond", Beyond::grid,
-      "what sees the environment: rays that leave the grid within the radius; or, as published, all that meet nothing within the radius"};
+      "what sees the environment: rays that leave the grid within the radius; or all that meet nothing within the radius",
+      published(Beyond::radius)};
   Param<float> occlusionDistance{
       this,
       "occlusion_distance",
@@ -79,7 +83,8 @@ class GatherPass : public Pass {
                            "of what a ray meets: projected back into 'map', or of its voxel in 'voxels'"};
   Param<HitPoint> hit{
       this, "hit", HitPoint::middle,
-      "the point that is projected back: the middle of the ray's way through the voxel, where it enters it, the voxel's centre, or, as published, x and y where it enters and the centre in z"};
+      "the point that is projected back: the middle of the ray's way through the voxel, where it enters it, the voxel's centre, or x and y where it enters and the centre in z",
+      published(HitPoint::printed)};
   Param<int> taps{this, "taps", 1, within(1, 4), "texels of the map for each hit: 1, or 4 bilinearly"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(0.0f, kLargestTolerance),
@@ -88,9 +93,9 @@ class GatherPass : public Pass {
       this, "cap", 4.0f, within(0.0f, 1000.0f),
       "most that this distance may be, in diagonals of a voxel (Listing 4.49; Sec. 3.2.3 has no bound, as 0 here)"};
   Param<bool> front{this, "front", true, "surfaces that look away from the receiver bring nothing"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, 'tolerance' on the side of the map's texel alone, before 'cap' and the voxel, and the printed choices of method, sequence, rotation, offset_unit, beyond and hit"};
+  PublishedForm asPublished{
+      this,
+      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, 'tolerance' on the side of the map's texel alone, before 'cap' and the voxel"};
   Out<Image> arriving{this, "arriving", Contributes::nothing, Needs::anyLight,
                       "E / pi at the pixels that send rays: mean radiance that arrives, W/(sr m^2)"};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
@@ -154,22 +159,19 @@ class GatherPass : public Pass {
                      : radius > 0.0f ? radius / voxel
                                      : std::numeric_limits<float>::infinity(),
             .occlusionReach = occlusion.wanted() ? reachOf(frame) / voxel : never,
-            .beyondRadius = asPublished || beyond == Beyond::radius,
+            .beyondRadius = beyond == Beyond::radius,
             .scale = asPublished ? std::numbers::inv_pi_v<float> : 1.0f};
   }
   int every() const { return 1 << static_cast<int>(static_cast<Pixels>(pixelsOf)); }
 
   gather::Constants constantsOf() const {
-    const bool printed = asPublished;
-    const HitPoint point = printed ? HitPoint::printed : hit;
-    const Rotation turned = printed ? Rotation::tile : rotation;
     return {.taps = taps,
             .frontTest = front,
-            .hitPoint = static_cast<int>(point),
-            .rotation = static_cast<int>(turned),
-            .hammersley = printed || sequence == Sequence::hammersley,
-            .offsetByDiagonal = printed || offsetUnit == OffsetUnit::diagonal,
-            .printedTests = printed};
+            .hitPoint = static_cast<int>(static_cast<HitPoint>(hit)),
+            .rotation = static_cast<int>(static_cast<Rotation>(rotation)),
+            .hammersley = sequence == Sequence::hammersley,
+            .offsetByDiagonal = offsetUnit == OffsetUnit::diagonal,
+            .printedTests = asPublished};
   }
 
   void run(PassContext& frame) override {
@@ -195,13 +197,13 @@ class GatherPass : public Pass {
                                                   : gather::Variant::radianceNone,
                                   .occlusion = occlusion.wanted(),
                                   .fetches = fetches.wanted(),
-                                  .bitRule = method.axis(asPublished)};
+                                  .bitRule = method.axis()};
     const shader::BoundProgram& program = frame.program(variant, constantsOf());
     // Heeded only where there are frames before; something must be bound.
     const gpu::TextureRef &earlierLight = light.previous ? light.previous : gbuffer->position,
                           &earlierOpen = open.previous ? open.previous : gbuffer->position;
     shader::BindingSet bound{GBufferBinding(*gbuffer),
-                             method.binding(frame, *bits, asPublished),
+                             method.binding(frame, *bits),
                              gather::arrivingImage(light.current),
                              gather::occlusionImage(open.current),
                              gather::fetchImage(counted),
@@ -223,7 +225,7 @@ class GatherPass : public Pass {
   void dispatchAll(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
                    gather::Rays& parameters, int lights, glm::ivec3 samples) const {
     const float diagonal = std::sqrt(3.0f) * bits->grid.voxelSize;
-    const std::int64_t ofRay = method.turns(*bits, asPublished), ofLight = 1 + 4;
+    const std::int64_t ofRay = method.turns(*bits), ofLight = 1 + 4;
     // Half of the limit at most, so that a ray has room beside them.
     const int lightsAtOnce = portionOf(lights, 2 * ofLight);
     forEachPortion(rays, ofRay + lightsAtOnce * ofLight, [&](int firstRay, int raysAtOnce) {

@@ -46,7 +46,8 @@ gpu::TextureRef rayMasks(PassContext& frame) {
 RayMethod::RayMethod(Pass* pass)
     : method_(
           pass, "method", Method::hierarchy,
-          "how the first voxel of a ray is found: from coarse texels to fine ones; by the stacks alone; one voxel after another: all find the same one; or as published (Listings 4.39, 4.40 and 4.47), which misses some"),
+          "how the first voxel of a ray is found: from coarse texels to fine ones; by the stacks alone; one voxel after another: all find the same one; or as printed (Listings 4.39, 4.40 and 4.47), which misses some",
+          published(Method::printed)),
       steps_(
           pass, "printed_steps", 256, within(1, 20000),
           "with 'method printed': steps after which a ray counts as free; the print leaves them to the user"),
@@ -54,14 +55,14 @@ RayMethod::RayMethod(Pass* pass)
               "with 'method printed': how far behind each exit the next step begins, in voxels along the "
               "ray; no number is published") {}
 
-shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits, bool asPublished) const {
+shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits) const {
   const GridPlacement& grid = bits.grid;
   shader::BindingSet result{shader::SampledSlot{"bitStacks"}(bits.stacks, gpu::Sampling::nearest)};
   // By name: every program that includes bit_grid.glsl has these blocks.
   namespace code = shaders::near_field_voxels::probe;
   result.add(shader::UniformSlot<code::Grid>{"Grid"}(
       {.gridLow = grid.low, .voxelSize = grid.voxelSize, .resolution = grid.resolution}));
-  if (axis(asPublished) != static_cast<int>(Method::printed)) return result;
+  if (axis() != static_cast<int>(Method::printed)) return result;
   if (grid.resolution.z > kBits)
     throw Error(fmt::format(
         "'method printed' reads one texel of {} bits along z, and the grid of 'bits' is {} voxels deep; expected at most {}, or another method",
@@ -73,9 +74,9 @@ shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits
   return result;
 }
 
-std::int64_t RayMethod::turns(const BinaryGrid& bits, bool asPublished) const {
+std::int64_t RayMethod::turns(const BinaryGrid& bits) const {
   const glm::i64vec3 size(bits.grid.resolution);
-  switch (static_cast<Method>(axis(asPublished))) {
+  switch (static_cast<Method>(method_)) {
     case Method::hierarchy:
       return hierarchyTurns(bits);
     case Method::stacks:

@@ -17,13 +17,11 @@ class RayMethod {
  public:
   explicit RayMethod(Pass* pass);
   /// Value of the axis BIT_RULE.
-  int axis(bool asPublished = false) const {
-    return static_cast<int>(asPublished ? Method::printed : static_cast<Method>(method_));
-  }
+  int axis() const { return static_cast<int>(static_cast<Method>(method_)); }
   /// The grid with its bits. Error where they do not fit the method.
-  shader::BindingSet binding(PassContext& frame, const BinaryGrid& bits, bool asPublished = false) const;
+  shader::BindingSet binding(PassContext& frame, const BinaryGrid& bits) const;
   /// A bound for the turns of all loops of one ray.
-  std::int64_t turns(const BinaryGrid& bits, bool asPublished = false) const;
+  std::int64_t turns(const BinaryGrid& bits) const;
 
  private:
   Param<Method> method_;

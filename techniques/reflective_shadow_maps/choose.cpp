@@ -38,18 +38,18 @@ class ChoosePass : public Pass {
 
   Param<Method> method{
       this, "method", Method::flux,
-      "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)"};
+      "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)",
+      published(Method::stride)};
   Param<int> wanted{this, "lights", 1024, within(1, 1048576), "with 'flux': texels that are taken"};
   Param<int> stride{this, "stride", 1, within(1, 4096),
                     "with 'stride': side of a square of texels that one stands for"};
   Param<Area> area{
       this, "area", Area::surface,
-      "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+      "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)",
+      published(Area::facing)};
   Param<Order> order{
       this, "order", Order::rows,
       "with 'flux': in which texels follow each other, so that near ones are seldom taken together; rows: those of each view; patches: squares, of all views that look the same way from an area light"};
-  Param<bool> asPublished{this, "as_published", false,
-                          "'method stride' and 'area facing' (Lensing & Broll 2013)"};
   Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
 
   void run(PassContext& frame) override {
@@ -58,10 +58,10 @@ class ChoosePass : public Pass {
       return;
     }
     requireAreas(*map);
-    lights = method == Method::flux && !asPublished ? byFlux(frame) : byStride(frame);
+    lights = method == Method::flux ? byFlux(frame) : byStride(frame);
   }
 
-  Area areaOf() const { return asPublished ? Area::facing : static_cast<Area>(area); }
+  Area areaOf() const { return area; }
 
   static void requireAreas(const ReflectiveShadowMap& map) {
     for (const gpu::TextureRef& texture : {map.position, map.normal})

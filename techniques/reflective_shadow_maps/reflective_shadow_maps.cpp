@@ -77,7 +77,8 @@ class GatherPass : public Pass {
       "with 'projected' and 'all': what the lights see; without it there is no indirect light"};
   Param<Method> method{
       this, "method", Method::lights,
-      "all of 'lights', or, as published, texels of 'map' around the projection of the surface point into each light's view, or all of them: exact and slow"};
+      "all of 'lights', or texels of 'map' around the projection of the surface point into each light's view, or all of them: exact and slow",
+      published(Method::projected)};
   Param<int> samples{this, "samples", 400, within(1, kLoopLimit),
                      "with 'projected': texels that are gathered, shared among the lights"};
   Param<float> reach{
@@ -85,7 +86,8 @@ class GatherPass : public Pass {
       "with 'projected': radius of the pattern as a share of the half turn around a light, or of the width of the view of a directional light, with 'published' of a spot light too"};
   Param<Weights> weights{
       this, "weights", Weights::exact,
-      "with 'projected': weight of a sample by the density of the pattern, or the printed square of its distance over the sum of these squares"};
+      "with 'projected': weight of a sample by the density of the pattern, or the printed square of its distance over the sum of these squares",
+      published(Weights::published)};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};
 

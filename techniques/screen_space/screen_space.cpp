@@ -33,7 +33,8 @@ class ScreenPass : public Pass {
       "how far from it they lie; 0: as far as the reference looks for what occludes, a tenth of the scene's diagonal"};
   Param<Surface> surface{
       this, "surface", Surface::plane,
-      "what lies before a point: the tangent plane of what its pixel sees, or, as published, the depth of that pixel"};
+      "what lies before a point: the tangent plane of what its pixel sees, or the depth of that pixel",
+      published(Surface::depth)};
   Param<Pixels> pixelsParameter{
       this, "pixels", Pixels::full,
       "a result for each pixel, for one of 2 x 2 or for one of 4 x 4, which image_filters.smooth brings to all"};
@@ -88,9 +89,8 @@ class SsaoPass : public ScreenPass {
   Param<Directions> directions{
       this, "directions", Directions::sphere,
       "points in the whole ball, of which a plane blocks half, or in its upper half, by the cosine"};
-  Param<bool> range{
-      this, "range", true,
-      "leave out what lies farther before the surface point than the radius; as published: off"};
+  Param<bool> range{this, "range", true,
+                    "leave out what lies farther before the surface point than the radius", published(false)};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
                        "unoccluded share of the directions, at the sampled pixels"};
 
@@ -112,7 +112,8 @@ class SsdoPass : public ScreenPass {
   In<Image> direct{this, "direct", "light of the surfaces that block: reflected once", Contributes::direct};
   Param<Area> area{
       this, "area", Area::solidAngle,
-      "what a surface that blocks a direction stands for: the direction's solid angle, 2 pi / N, or, as published, the area pi r^2 / N"};
+      "what a surface that blocks a direction stands for: the direction's solid angle, 2 pi / N, or the area pi r^2 / N",
+      published(Area::published)};
   Out<Image> arriving{
       this, "arriving", Contributes::nothing, Needs::anyLight | Needs::triangles,
       "mean radiance that arrives, E / pi, at the sampled pixels: image_filters.smooth multiplies it by the albedo"};

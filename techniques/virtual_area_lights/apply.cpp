@@ -26,15 +26,17 @@ class ApplyPass : public Pass {
   Param<Interpolate> interpolate{
       this, "interpolate", Interpolate::averaged,
       "of the diffuse lobe; averaged: the points' lights, which the pixel's normal then meets; plain: what the "
-      "points reflect"};
+      "points reflect",
+      published(Interpolate::averaged)};
   Param<At> at{
       this, "at", At::pixels,
       "where the nearest points are mixed; pixels: for each one anew; vertices: at those of the meshes, "
-      "and from there through the rasteriser (published), for meshes finer than the points"};
-  Param<bool> asPublished{this, "as_published", false,
-                          "'at vertices', Eq. 10 with its squared distance to the averaged place, as "
-                          "normalise must have it too, and of the glossy lobe too the mean of the lights' "
-                          "places, in place of their offsets from the points"};
+      "and from there through the rasteriser, for meshes finer than the points",
+      published(At::vertices)};
+  PublishedForm asPublished{
+      this,
+      "Eq. 10 with its squared distance to the averaged place, as normalise must have it too, and of the "
+      "glossy lobe too the mean of the lights' places, in place of their offsets from the points"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -78,7 +80,7 @@ class ApplyPass : public Pass {
                    bound, pixels(frame));
   }
 
-  bool atVertices() const { return asPublished || at == At::vertices; }
+  bool atVertices() const { return at == At::vertices; }
   /// Error where they are missing, or refer to other points.
   void checkVertices() const {
     if (!vertices.present())
@@ -90,13 +92,7 @@ class ApplyPass : public Pass {
           "virtual_area_lights.apply: 'vertices' refer to other points than 'points' are; expected those of one "
           "pass virtual_area_lights.points");
   }
-  int interpolated() const {
-    if (asPublished && interpolate == Interpolate::plain)
-      throw Error(
-          "virtual_area_lights.apply: 'interpolate plain' and 'as_published on' exclude each other; expected "
-          "'interpolate averaged', which is published");
-    return interpolate == Interpolate::plain;
-  }
+  int interpolated() const { return interpolate == Interpolate::plain; }
 
   static shader::BindingSet lightBinding(const SparseLight& of) {
     using gpu::Sampling;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lumivox/plugin/technique.h"
+#include "points/surface_points_binding.h"
 #include "vertex_points.h"
 
 namespace lumivox::virtual_area_lights {

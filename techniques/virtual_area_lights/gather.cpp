@@ -29,16 +29,17 @@ class GatherPass : public Pass {
   In<SurfaceLights> moreLights{this, "more_lights", Presence::optional, "more of them, from elsewhere"};
   Param<Method> method{
       this, "method", Method::shared,
-      "how lights reach the points; cached: 128 in a dispatch, added to the targets (published); shared: "
-      "through the memory of a work group"};
+      "how lights reach the points; cached: 128 in a dispatch, added to the targets; shared: through the "
+      "memory of a work group",
+      published(Method::cached)};
   Param<ExponentLimit> exponentLimit{
       this, "exponent_limit", ExponentLimit::spacing,
       "of the glossy lobe; spacing: none narrower than what points as far apart as they are still catch; "
-      "none: as published"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "'method cached', 'exponent_limit none', Eq. 4 with the flux, Eq. 5 at the middle of the disc and without "
-      "the receiver's cosine, and Sec. 3.3's sphere without the lights' own extent"};
+      "none: whatever the exponent",
+      published(ExponentLimit::none)};
+  PublishedForm asPublished{this,
+                            "Eq. 4 with the flux, Eq. 5 at the middle of the disc and without "
+                            "the receiver's cosine, and Sec. 3.3's sphere without the lights' own extent"};
   Param<float> factor{this, "factor", 1.0f, within(0.0f, 1e6f),
                       "with 'as_published': c of Eq. 5, which the paper leaves to the user"};
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
@@ -83,7 +84,7 @@ class GatherPass : public Pass {
     for (const In<SurfaceLights>* some : all)
       if (*some) total += (*some)->count;
     if (total == 0) return result;
-    const Method how = asPublished ? Method::cached : method;
+    const Method how = method;
     const int most = how == Method::cached ? kChunk : kLoopLimit / kChunk * kChunk / 2;
     const std::array<gpu::TextureRef, 3> sums{sparseTexture(frame, *points, "sums of light"),
                                               sparseTexture(frame, *points, "sums of offsets"),
@@ -105,7 +106,7 @@ class GatherPass : public Pass {
             .smallWeight = kSmallWeights / static_cast<float>(total),
             .begins = before == 0,
             .ends = added == total,
-            .resolved = exponentLimit == ExponentLimit::spacing && !asPublished ? kResolvedBySpacing : 0.0f,
+            .resolved = exponentLimit == ExponentLimit::spacing ? kResolvedBySpacing : 0.0f,
             .factor = factor,
             .overlapping = static_cast<float>((*some)->overlapping)};
         forEachPoint(frame, program,

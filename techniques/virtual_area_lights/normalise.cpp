@@ -20,8 +20,8 @@ class NormalisePass : public Pass {
   In<SparseLight> gathered{this, "light", "averaged light, of gather"};
   Param<float> amplification{this, "amplification", 10.0f, within(1.0f, 1e6f),
                              "most that the division by the cosine of the averaged light may enlarge it"};
-  Param<bool> asPublished{
-      this, "as_published", false,
+  PublishedForm asPublished{
+      this,
       "without this limit and that of the brightest light, Eq. 11 with its squared distance to the "
       "averaged place"};
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,

@@ -16,12 +16,11 @@ class OccludePass : public Pass {
   In<SurfacePoints> points{this, "points", "where light was gathered, and the discs that stand before it"};
   In<SparseLight> unoccluded{this, "light", "averaged light, of normalise"};
   Param<bool> occlusion{this, "occlusion", true, "off: the light passes as it is"};
-  Param<Combine> combine{
-      this, "combine", Combine::mask,
-      "how discs hide together; product: each its share of what is left (published); sum: of all; "
-      "nearest: the nearest alone; mask: what 64 bits of the light's square say together"};
-  Param<bool> asPublished{this, "as_published", false,
-                          "'combine product', and the sphere seen by the form factor of a disc"};
+  Param<Combine> combine{this, "combine", Combine::mask,
+                         "how discs hide together; product: each its share of what is left; sum: of all; "
+                         "nearest: the nearest alone; mask: what 64 bits of the light's square say together",
+                         published(Combine::product)};
+  PublishedForm asPublished{this, "the sphere seen by the form factor of a disc"};
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                          "averaged light without what discs hide of it"};
 
@@ -43,8 +42,8 @@ class OccludePass : public Pass {
     gpu::TextureRef result = sparseTexture(frame, *points, "occluded light");
     const gpu::BufferRef states =
         frame.elements(occlude::states, static_cast<std::uint64_t>(points->count), "occlusion so far");
-    const shader::BoundProgram& program = frame.program(occlude::Variant{
-        .combine = static_cast<int>(asPublished ? Combine::product : static_cast<Combine>(combine))});
+    const shader::BoundProgram& program =
+        frame.program(occlude::Variant{.combine = static_cast<int>(static_cast<Combine>(combine))});
     forEachPortion(points->count, 0, [&](int first, int count) {
       forEachPoint(
           frame, program,

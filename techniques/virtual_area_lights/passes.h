@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "lumivox/plugin/technique.h"
+#include "points/surface_points_binding.h"
+#include "sparse_light.h"
 
 namespace lumivox::virtual_area_lights {
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lumivox/pipeline/pass.h"
+#include "points/surface_points_port.h"
 
 namespace lumivox::virtual_area_lights {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lumivox/scene/surface_points.h"
+#include "points/surface_points.h"
 
 namespace lumivox::virtual_area_lights {
 

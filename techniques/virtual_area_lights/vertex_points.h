@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/scene/surface_points.h"
+#include "points/surface_points.h"
 
 namespace lumivox::virtual_area_lights {
 

@@ -64,7 +64,8 @@ class InsertPass : public Pass {
                         "voxels along the longest side of the box that encloses all particles of a medium"};
   Param<Deposit> deposit{
       this, "deposit", Deposit::clouds,
-      "a particle as the cloud that it is, or all of it in the one voxel that contains its centre, as published"};
+      "a particle as the cloud that it is, or all of it in the one voxel that contains its centre",
+      published(Deposit::counts)};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::media; }
@@ -167,15 +168,20 @@ class MarchPass : public Pass {
   Param<int> lightResolution{this, "light_resolution", 32, within(4, 256),
                              "points along each side of that grid, for each light"};
   Param<int> cells{
-      this, "cells", 8, within(0, 1024),
+      this,
+      "cells",
+      8,
+      within(0, 1024),
       "cubes between voxels over which densities are integrated exactly, from every place of a step "
-      "towards the eye and towards the lights; 0: looked at once a step, as published"};
+      "towards the eye and towards the lights; 0: looked at once a step",
+      published(0)};
   Param<int> lightSteps{this, "light_steps", 32, within(1, 1024), "most steps of a march towards a light"};
   Param<Start> start{this, "start", Start::dithered,
                      "where each step is looked at: another place in neighbouring pixels, or the middle"};
   Param<Phase> phase{
       this, "phase", Phase::normalised,
-      "Henyey-Greenstein with the factor (1-g^2), or (1-g)^2, with which scattering loses energy"};
+      "Henyey-Greenstein with the factor (1-g^2), or (1-g)^2, with which scattering loses energy",
+      published(Phase::asPublished)};
   Out<Image> scattered{
       this, "scattered", Contributes::scattered, Needs::medium,
       "light that media scatter once to the camera, W/(sr m^2); with `half` an image of half "

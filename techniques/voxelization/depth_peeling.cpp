@@ -57,10 +57,10 @@ class DepthPeelingPass : public Voxelizer {
                         depth_peeling_append::layerDepthInGrid(now.depthInGrid, gpu::Sampling::nearest)},
                        {side, side, 1});
       }
-      frame.judgeLater(deepest, static_cast<std::uint64_t>(axis) * sizeof(std::uint32_t),
-                       [this, &plan, axis](PassContext& done, std::uint32_t count) {
-                         return wereAll(done, plan, axis, static_cast<int>(count));
-                       });
+      frame.checkAfterFrame(deepest, static_cast<std::uint64_t>(axis) * sizeof(std::uint32_t),
+                            [this, &plan, axis](PassContext& done, std::uint32_t count) {
+                              return wereAll(done, plan, axis, static_cast<int>(count));
+                            });
     }
   }
 

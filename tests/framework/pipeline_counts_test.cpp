@@ -23,7 +23,7 @@ class Counter : public Toy {
     const gpu::BufferRef counts = frame.buffer(sizeof(words), "counts");
     counts->uploadValues(std::span<const std::uint32_t>(words));
     image = paint(frame, static_cast<float>(room_));
-    frame.judgeLater(counts, sizeof(std::uint32_t), [this](PassContext& done, std::uint32_t count) {
+    frame.checkAfterFrame(counts, sizeof(std::uint32_t), [this](PassContext& done, std::uint32_t count) {
       if (count <= room_) return true;
       if (learns) room_ = count;
       done.warn("it was too little");

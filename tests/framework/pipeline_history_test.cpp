@@ -192,7 +192,7 @@ class Cramped : public Toy {
     kept.current->clear(glm::vec4(value));
     const gpu::BufferRef count = frame.buffer(4, "count");
     count->clear(static_cast<std::uint32_t>(frame.frameIndex()));
-    frame.judgeLater(count, 0, [this](PassContext&, std::uint32_t index) {
+    frame.checkAfterFrame(count, 0, [this](PassContext&, std::uint32_t index) {
       return index != 1 || std::exchange(roomy_, true);
     });
     sum = paint(frame, value + 100.0f * static_cast<float>(frame.accumulated()));

@@ -5,11 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "../../techniques/implicit_visibility/links/direction_bins.h"
+#include "../../techniques/implicit_visibility/links/element_light.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
 namespace lumivox::test {
+
+using namespace implicit_visibility;
 
 /// One frame of `implicit_visibility_lights`, or of `implicit_visibility` in place of it, and what its passes
 /// made.

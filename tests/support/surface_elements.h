@@ -8,12 +8,17 @@
 #include <variant>
 #include <vector>
 
+#include "../../techniques/implicit_visibility/elements/surface_elements.h"
+#include "../../techniques/implicit_visibility/links/element_light.h"
+#include "../../techniques/implicit_visibility/links/element_links.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "support/techniques.h"
 
 namespace lumivox::test {
+
+using namespace implicit_visibility;
 
 /// Parameters of one of the passes.
 using Settings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;

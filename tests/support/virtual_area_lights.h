@@ -10,12 +10,16 @@
 #include <variant>
 #include <vector>
 
+#include "../../techniques/virtual_area_lights/points/surface_points_port.h"
+#include "../../techniques/virtual_area_lights/sparse_light.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
 namespace lumivox::test {
+
+using namespace virtual_area_lights;
 
 struct SparsePoint {
   glm::vec3 position{0.0f}, normal{0, 1, 0};

@@ -108,8 +108,8 @@ const std::set<std::string> kPassedOn{"techniques/voxel_cone_tracing/dense/filte
                                       "techniques/voxel_cone_tracing/clipmap/clipmap.cpp: radiance"};
 
 /// Techniques that are still to be read in one sitting: what they may have at most.
-const std::map<std::string, FolderSize> kLargeFolders{{"techniques/implicit_visibility", {30, 3009}},
-                                                      {"techniques/virtual_area_lights", {15, 985}},
+const std::map<std::string, FolderSize> kLargeFolders{{"techniques/implicit_visibility", {30, 3022}},
+                                                      {"techniques/virtual_area_lights", {16, 1029}},
                                                       {"techniques/voxelization", {16, 1517}}};
 const std::map<std::string, int> kWidelyIncluding{
     {"shaders/implicit_visibility/display_glossy.comp", 11},
@@ -367,6 +367,14 @@ TEST_CASE("the framework names no technique and no technique includes another") 
 TEST_CASE("a folder of a technique is read in one sitting, and so is what a shader includes") {
   CHECK_NONE(largeFolders(projectSources(), kLargeFolders));
   CHECK_NONE(widelyIncluding(projectSources(), kWidelyIncluding));
+}
+
+TEST_CASE("the switch as_published is the framework's: no pass declares one of its own") {
+  for (const SourceFile& source : projectSources())
+    if (startsWith(source.path, "techniques/")) {
+      INFO(source.path);
+      CHECK(source.text.find("\"as_published\"") == std::string::npos);
+    }
 }
 
 TEST_CASE("no pass reads a kind of port without a look at the members that tell every reader how") {

@@ -59,6 +59,13 @@ std::string meaningAfter(const std::string& meaning) {
   return meaning.empty() ? "" : ": " + meaning;
 }
 
+/// "1..32; default 8; published 1".
+std::string valuesText(const ParamBase& parameter) {
+  const std::string printed = parameter.publishedText();
+  return rangeText(parameter) + "; default " + parameter.defaultText() +
+         (printed.empty() ? std::string() : "; published " + printed);
+}
+
 std::string passText(const std::string& technique, const PassEntry& entry) {
   const std::unique_ptr<Pass> pass = entry.make();
   std::string text = fmt::format("pass NAME {}.{}\n  {}\n", technique, entry.name, entry.meaning);
@@ -73,9 +80,7 @@ std::string passText(const std::string& technique, const PassEntry& entry) {
   };
   section("inputs", pass->inputs(), inputText);
   section("outputs", pass->outputs(), outputText);
-  section("parameters", pass->parameters(), [](const ParamBase& parameter) {
-    return rangeText(parameter) + "; default " + parameter.defaultText();
-  });
+  section("parameters", pass->parameters(), valuesText);
   return text;
 }
 
@@ -155,9 +160,7 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
     };
     collect(inputs, pass->inputs(), inputText);
     collect(outputs, pass->outputs(), outputText);
-    collect(parameters, pass->parameters(), [](const ParamBase& parameter) {
-      return rangeText(parameter) + "; default " + parameter.defaultText();
-    });
+    collect(parameters, pass->parameters(), valuesText);
   });
   return text + membersText("output", word, outputs) + membersText("input", word, inputs) +
          membersText("parameter", word, parameters);
@@ -308,13 +311,14 @@ int describeAsMarkdown(const GlobalOptions& global) {
     if (owner.name != technique)
       text += fmt::format("\n### {}\n\n{}\n\n{}\n", owner.name, owner.meaning, owner.paper);
     technique = owner.name;
-    text += fmt::format("\n#### {}.{}\n\n{}\n\n| Word | Kind | Values | Meaning |\n|---|---|---|---|\n",
-                        owner.name, entry.name, entry.meaning);
+    text += fmt::format(
+        "\n#### {}.{}\n\n{}\n\n| Word | Kind | Values | Published | Meaning |\n|---|---|---|---|---|\n",
+        owner.name, entry.name, entry.meaning);
     const std::unique_ptr<Pass> pass = entry.make();
     const auto row = [&](const std::string& word, const char* kind, const std::string& values,
-                         const std::string& meaning) {
-      text +=
-          fmt::format("| `{}` | {} | {} | {} |\n", word, kind, markdownCell(values), markdownCell(meaning));
+                         const std::string& meaning, const std::string& printed = {}) {
+      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", word, kind, markdownCell(values), printed,
+                          markdownCell(meaning));
     };
     for (const InBase* input : pass->inputs())
       row(input->name(), "input", inputText(*input), input->meaning());
@@ -322,7 +326,7 @@ int describeAsMarkdown(const GlobalOptions& global) {
       row(output->name(), "output", outputText(*output), output->meaning());
     for (const ParamBase* parameter : pass->parameters())
       row(parameter->name(), "parameter", rangeText(*parameter) + "; default " + parameter->defaultText(),
-          parameter->meaning());
+          parameter->meaning(), parameter->publishedText());
   });
   print(text);
   return kGood;

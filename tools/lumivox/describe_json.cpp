@@ -176,6 +176,7 @@ Json parameter(const ParamBase& one) {
     addRange(json, given(one.low()), given(one.high()), one.unit());
   else if (one.type() == ParamBase::Type::word)
     json["choices"] = one.choices();
+  if (const std::string printed = one.publishedText(); !printed.empty()) json["published"] = valueOf(printed);
   return json;
 }
 

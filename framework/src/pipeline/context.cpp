@@ -36,8 +36,8 @@ gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& 
   return buffer;
 }
 
-void FrameContext::judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) {
-  judgements_.push_back({passName_, std::move(counts), offsetBytes, std::move(judge)});
+void FrameContext::checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) {
+  pendingChecks_.push_back({passName_, std::move(counts), offsetBytes, std::move(check)});
 }
 
 bool FrameContext::allHadRoom() {
@@ -45,12 +45,12 @@ bool FrameContext::allHadRoom() {
   // as many as it is long, and one that doubles its room no more than a word has bits.
   constexpr int kMostAttempts = 64;
   bool enough = true;
-  for (const Judgement& one : std::exchange(judgements_, {})) {
+  for (const PendingCheck& one : std::exchange(pendingChecks_, {})) {
     passName_ = one.pass;
     try {
       std::uint32_t count = 0;
       std::memcpy(&count, one.counts->download(one.offsetBytes, sizeof(count)).data(), sizeof(count));
-      if (one.judge(*this, count)) continue;
+      if (one.check(*this, count)) continue;
       enough = false;
       if (attempts_ == kMostAttempts)
         throw Error(fmt::format("no room for its count ({}) after {} attempts", count, kMostAttempts));
@@ -112,7 +112,7 @@ void FrameContext::setScene(const Scene& scene, bool uploads) {
 }
 
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
-  judgements_.clear();  // of a frame that an error ended
+  pendingChecks_.clear();  // of a frame that an error ended
   snapshot_ = std::move(snapshot);
   frameIndex_ = frameIndex;
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);

@@ -40,7 +40,7 @@ class FrameContext : public PassContext {
   }
   gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) override;
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
-  void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) override;
+  void checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) override;
   void warn(const std::string& text) override;
   History<gpu::TextureRef> history(const gpu::TextureDescription& description,
                                    const std::string& label) override;
@@ -74,9 +74,9 @@ class FrameContext : public PassContext {
   /// the device before and after, and takes the time between as the device's; without it that is 0.
   /// `accumulated`: what the pass is told under this name.
   gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false, int accumulated = 0);
-  /// Whether a pass of the frame has left a count to be judged.
-  bool hasCounts() const { return !judgements_.empty(); }
-  /// Once the device is idle: has the counts of the frame judged. False when a pass had too little room, so
+  /// Whether a pass of the frame has left a count to be checked.
+  bool hasCounts() const { return !pendingChecks_.empty(); }
+  /// Once the device is idle: has the counts of the frame checked. False when a pass had too little room, so
   /// that the frame has to be rendered again, with nothing that was kept. Error when that does not help.
   bool allHadRoom();
   /// Bytes that the last run asked the pool for.
@@ -103,14 +103,14 @@ class FrameContext : public PassContext {
   const Pass* pass_ = nullptr;           ///< that runs
   int accumulated_ = 0;
   bool accumulates_ = false, inspects_ = false;
-  struct Judgement {
+  struct PendingCheck {
     std::string pass;
     gpu::BufferRef counts;
     std::uint64_t offsetBytes;
-    CountJudge judge;
+    CountCheck check;
   };
-  std::vector<Judgement> judgements_;  ///< of this frame
-  int attempts_ = 0;                   ///< at this frame that had too little room
+  std::vector<PendingCheck> pendingChecks_;  ///< of this frame
+  int attempts_ = 0;                         ///< at this frame that had too little room
   std::vector<std::string> notes_;
   std::set<std::string> warnings_;
   mutable std::set<std::string> seeded_;

@@ -89,8 +89,7 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
 namespace {
 
 /// Whether a pass sees other inputs, or is asked for other outputs, with another plan.
-bool plannedOtherwise(const BoundPass& bound, std::size_t pass, const PrunePlan& before,
-                      const PrunePlan& after) {
+bool planDiffers(const BoundPass& bound, std::size_t pass, const PrunePlan& before, const PrunePlan& after) {
   const PassPlan &a = before.passes[pass], &b = after.passes[pass];
   if (a.kept != b.kept) return true;
   for (std::size_t port = 0; port < b.outputs.size(); ++port)
@@ -134,7 +133,7 @@ const PrunePlan& PipelineExecutor::State::planned() {
       output.keep = output.keep || (keepsOutputs && output.wanted);
     }
     if (!plan->passes[pass].kept) context.memory().forgetKept(graph.passes[pass].name);
-    if (earlierPlan && plannedOtherwise(graph.passes[pass], pass, *earlierPlan, *plan)) mustRun[pass] = true;
+    if (earlierPlan && planDiffers(graph.passes[pass], pass, *earlierPlan, *plan)) mustRun[pass] = true;
   }
   if (options.accumulate) countedSources = sourcesThatCount();
   if (!earlierPlan) complete = false;

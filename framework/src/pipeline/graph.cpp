@@ -150,10 +150,11 @@ class Binder {
       }
     }
     if (findings_.size() == findingsBefore) {
-      if (const std::string contradiction = pass.checkParameters(); !contradiction.empty()) {
+      std::string contradiction = pass.applyPublished();
+      if (contradiction.empty()) contradiction = pass.checkParameters();
+      if (!contradiction.empty())
         report(text, fmt::format("the parameters of pass '{}' contradict each other: {}", text.name,
                                  contradiction));
-      }
     }
   }
 
@@ -379,6 +380,7 @@ class Binder {
                fmt::format("parameter '{}' is {}, which does not fit", parameter.name(), constant->text()),
                misfitExpectation(misfit));
       }
+      parameter.state();
       return;
     }
     const PipelineParameter* declared = findParameter(pipeline_, value.text);
@@ -409,6 +411,8 @@ class Binder {
              fmt::format("'${}' is {}, which does not fit '{}'", value.text, chosen.text(), parameter.name()),
              misfitExpectation(misfit));
     }
+    // A pipeline hands all of its parameters on; those at the default of the pass state nothing.
+    if (parameter.valueText() != parameter.defaultText()) parameter.state();
   }
 
   static std::string tryValue(ParamBase& parameter, const ParameterValue& value) {

@@ -68,11 +68,15 @@ void require(const std::string& parameter, const std::string& misfit) {
 
 void PassHarness::setParameter(const std::string& name, double value) {
   state_->context.memory().forgetKept();
-  require(name, parameterNamed(*state_->pass, name).set(value));
+  ParamBase& parameter = parameterNamed(*state_->pass, name);
+  require(name, parameter.set(value));
+  parameter.state();
 }
 void PassHarness::setParameter(const std::string& name, const std::string& word) {
   state_->context.memory().forgetKept();
-  require(name, parameterNamed(*state_->pass, name).set(word));
+  ParamBase& parameter = parameterNamed(*state_->pass, name);
+  require(name, parameter.set(word));
+  parameter.state();
 }
 
 Pass& PassHarness::holder() {
@@ -109,8 +113,9 @@ void PassHarness::run(std::uint64_t seed) {
       throw Error(fmt::format("required input '{}' was not set", input->name()));
     }
   }
-  if (const std::string contradiction = state_->pass->checkParameters(); !contradiction.empty())
-    throw Error(contradiction);
+  std::string contradiction = state_->pass->applyPublished();
+  if (contradiction.empty()) contradiction = state_->pass->checkParameters();
+  if (!contradiction.empty()) throw Error(contradiction);
   state_->context.setSeed(seed);
   FrameContext& context = state_->context;
   bool again = false;

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <memory>
 
 #include "lumivox/base/error.h"
 #include "lumivox/dsl/document.h"
@@ -31,16 +32,66 @@ std::string rangeText(const ParamBase& parameter) {
 
 ParamBase::ParamBase(Pass* pass, std::string name, Type type, std::string meaning)
     : name_(std::move(name)), meaning_(std::move(meaning)), type_(type) {
-  pass->parameters_.push_back(this);
+  auto& all = pass->parameters_;
+  all.insert(pass->publishedForm_ != nullptr ? all.end() - 1 : all.end(), this);
+}
+
+void ParamBase::addPublishedForm(Pass* pass) {
+  if (pass->publishedForm_ == nullptr) pass->ownPublishedForm_ = std::make_unique<PublishedForm>(pass);
+}
+
+PublishedForm::PublishedForm(Pass* pass, std::string more)
+    : Param<bool>(pass, "as_published", false, {}), pass_(*pass), more_(std::move(more)) {
+  if (pass->publishedForm_ != nullptr) {  // which a parameter before this one asked for
+    pass->parameters_.pop_back();
+    pass->ownPublishedForm_.reset();
+  }
+  pass->publishedForm_ = this;
+}
+
+std::string PublishedForm::meaning() const {
+  std::vector<std::string> words;
+  for (const ParamBase* parameter : pass_.parameters())
+    if (const std::string text = parameter->publishedText(); !text.empty())
+      words.push_back(fmt::format("'{} {}'", parameter->name(), text));
+  if (!more_.empty()) words.push_back(more_);
+  return fmt::format("as printed: {}", fmt::join(words, ", "));
+}
+
+std::string Pass::applyPublished() {
+  if (publishedForm_ == nullptr) return {};
+  const bool on = *publishedForm_;
+  std::vector<std::string> contradictions;
+  for (ParamBase* parameter : parameters_) {
+    const std::string printed = parameter->publishedText();
+    if (printed.empty()) continue;
+    if (!parameter->isStated())
+      on ? parameter->setPublished() : parameter->setDefault();
+    else if (on && parameter->valueText() != printed)
+      contradictions.push_back(fmt::format("'{0} {1}' is published, and '{0} {2}' given", parameter->name(),
+                                           printed, parameter->valueText()));
+  }
+  if (contradictions.empty()) return {};
+  return fmt::format("as_published is on: {}; expected the published value, or none",
+                     fmt::join(contradictions, "; "));
 }
 
 // ---- int -----------------------------------------------------------------------------------------------
 
-Param<int>::Param(Pass* pass, std::string name, int value, ParamRange<int> range, std::string meaning)
-    : ParamBase(pass, std::move(name), Type::integer, std::move(meaning)), value_(value), default_(value) {
+Param<int>::Param(Pass* pass, std::string name, int value, ParamRange<int> range, std::string meaning,
+                  MaybePublished<int> printed)
+    : ParamBase(pass, std::move(name), Type::integer, std::move(meaning)),
+      value_(value),
+      default_(value),
+      published_(printed) {
   assert(range.low <= value && value <= range.high);
+  assert(!printed || (range.low <= printed->value && printed->value <= range.high));
   low_ = range.low;
   high_ = range.high;
+  if (printed) addPublishedForm(pass);
+}
+std::string Param<int>::publishedText() const {
+  return published_ ? fmt::format("{}", published_->value) : std::string();
 }
 std::string Param<int>::valueText() const {
   return fmt::format("{}", value_);
@@ -62,9 +113,13 @@ std::string Param<int>::set(const std::string&) {
 // ---- float ---------------------------------------------------------------------------------------------
 
 Param<float>::Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit,
-                    std::string meaning)
-    : ParamBase(pass, std::move(name), Type::number, std::move(meaning)), value_(value), default_(value) {
+                    std::string meaning, MaybePublished<float> printed)
+    : ParamBase(pass, std::move(name), Type::number, std::move(meaning)),
+      value_(value),
+      default_(value),
+      published_(printed) {
   assert(range.low <= value && value <= range.high);
+  assert(!printed || (range.low <= printed->value && printed->value <= range.high));
   const auto& units = dsl::knownUnits();
   // Its range and its value are in base units.
   std::vector<std::string> names;
@@ -76,6 +131,10 @@ Param<float>::Param(Pass* pass, std::string name, float value, ParamRange<float>
   low_ = range.low;
   high_ = range.high;
   unit_ = std::move(unit);
+  if (printed) addPublishedForm(pass);
+}
+std::string Param<float>::publishedText() const {
+  return published_ ? withUnit(fmt::format("{}", published_->value), unit_) : std::string();
 }
 std::string Param<float>::valueText() const {
   return withUnit(fmt::format("{}", value_), unit_);
@@ -98,9 +157,18 @@ std::string Param<float>::set(const std::string&) {
 
 // ---- flag ----------------------------------------------------------------------------------------------
 
-Param<bool>::Param(Pass* pass, std::string name, bool value, std::string meaning)
-    : ParamBase(pass, std::move(name), Type::flag, std::move(meaning)), value_(value), default_(value) {
+Param<bool>::Param(Pass* pass, std::string name, bool value, std::string meaning,
+                   MaybePublished<bool> printed)
+    : ParamBase(pass, std::move(name), Type::flag, std::move(meaning)),
+      value_(value),
+      default_(value),
+      published_(printed) {
   choices_ = {"on", "off"};
+  if (printed) addPublishedForm(pass);
+}
+std::string Param<bool>::publishedText() const {
+  if (!published_) return {};
+  return published_->value ? "on" : "off";
 }
 std::string Param<bool>::valueText() const {
   return value_ ? "on" : "off";
@@ -120,10 +188,14 @@ std::string Param<bool>::set(const std::string& word) {
 // ---- word ----------------------------------------------------------------------------------------------
 
 WordParam::WordParam(Pass* pass, std::string name, std::size_t value, std::vector<std::string> words,
-                     std::string meaning)
-    : ParamBase(pass, std::move(name), Type::word, std::move(meaning)), value_(value), default_(value) {
+                     std::string meaning, std::optional<std::size_t> printed)
+    : ParamBase(pass, std::move(name), Type::word, std::move(meaning)),
+      value_(value),
+      default_(value),
+      published_(printed) {
   assert(value < words.size());
   choices_ = std::move(words);
+  if (printed) addPublishedForm(pass);
 }
 std::string WordParam::wordOf(std::string_view name) {
   std::string word;

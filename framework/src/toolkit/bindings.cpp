@@ -13,15 +13,6 @@ struct alignas(16) DrawBlock {
   std::int32_t object = 0, material = 0;
 };
 
-/// Block PointGrid of common/surface_points.glsl.
-struct alignas(16) PointGridBlock {
-  glm::vec3 low;
-  float cellsPerMetre;
-  glm::ivec3 cells;
-  std::int32_t count;
-  float spacing, farthest;
-};
-
 }  // namespace
 
 SceneBinding::SceneBinding(PassContext& frame, const gpu::Texture* diffuse, const gpu::Texture* mask)
@@ -65,16 +56,6 @@ ReflectiveShadowMapBinding::ReflectiveShadowMapBinding(const ReflectiveShadowMap
                  SampledSlot{"rsmPosition"}(map.position, Sampling::nearest),
                  SampledSlot{"rsmNormal"}(map.normal, Sampling::nearest),
                  SampledSlot{"rsmFlux"}(map.flux, Sampling::nearest)} {}
-
-SurfacePointsBinding::SurfacePointsBinding(const SurfacePoints& points)
-    : BindingSet{SampledSlot{"pointPosition"}(points.position, Sampling::nearest),
-                 SampledSlot{"pointNormal"}(points.normal, Sampling::nearest),
-                 SampledSlot{"pointRadius"}(points.radius, Sampling::nearest),
-                 StorageSlot{"PointCells"}(points.cells), StorageSlot{"PointCandidates"}(points.candidates)} {
-  const GridPlacement& grid = points.grid;
-  add(shader::UniformSlot<PointGridBlock>{"PointGrid"}(
-      {grid.low, 1.0f / grid.voxelSize, grid.resolution, points.count, points.spacing, points.farthest}));
-}
 
 FragmentBinding::FragmentBinding(const VoxelFragments& list)
     : BindingSet{StorageSlot{"FragmentCount"}(list.count), StorageSlot{"Fragments"}(list.fragments)} {}

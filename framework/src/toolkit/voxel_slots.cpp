@@ -45,7 +45,7 @@ void finishCount(PassContext& frame, const shader::BoundProgram& finish, const g
 void finishGuessed(PassContext& frame, const shader::BoundProgram& finish, const gpu::BufferRef& count,
                    std::uint64_t capacity, std::uint64_t base, std::uint64_t& room, bool repeats) {
   finishCount(frame, finish, count, capacity);
-  frame.judgeLater(count, kWantedOffset, [=, &room](PassContext&, std::uint32_t wanted) {
+  frame.checkAfterFrame(count, kWantedOffset, [=, &room](PassContext&, std::uint32_t wanted) {
     const bool fits = wanted <= capacity;
     if (fits && !repeats) return true;
     requireListable(wanted);

@@ -34,6 +34,8 @@ std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, Technique
     const PassEntry* entry = technique == nullptr ? nullptr : technique->find(text.pass);
     if (entry == nullptr) continue;
     const std::unique_ptr<Pass> pass = entry->make();
+    const dsl::Property* form = propertyOf(*text.block, "as_published");
+    const bool asPublished = form != nullptr && !form->values.empty() && form->values[0].text == "on";
     for (const ParamBase* parameter : pass->parameters()) {
       const dsl::Property* set = propertyOf(*text.block, parameter->name());
       PassParameter one{text.name + "." + parameter->name(),
@@ -47,6 +49,7 @@ std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, Technique
         one.value = set->values[0].written();
         one.bound = set->values[0].kind == dsl::ValueKind::parameter;
       }
+      if (asPublished && !parameter->publishedText().empty()) one.bound = true;
       all.push_back(std::move(one));
     }
   }

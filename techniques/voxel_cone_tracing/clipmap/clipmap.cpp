@@ -420,7 +420,7 @@ class ClipmapPass : public Pass {
         {clipmap_finish::room({static_cast<std::uint32_t>(room), kGroup}), clipmap_finish::count(count)},
         {1, 1, 1});
     constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);
-    frame.judgeLater(count, kWantedOffset, [&room, had = room](PassContext&, std::uint32_t wanted) {
+    frame.checkAfterFrame(count, kWantedOffset, [&room, had = room](PassContext&, std::uint32_t wanted) {
       if (wanted > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", wanted));
       if (wanted <= had) return true;
       room = wanted + wanted / 8;

@@ -115,8 +115,8 @@ class OctreePass : public Pass {
   Param<Voxels> voxels{
       this, "voxels", Voxels::asGrid,
       "where voxels lie: at all levels as in a dense grid; at the corners of nodes (Crassin et al. 2011); in the eighths of leaves, with only the nodes that fragments lie in (as published in the thesis)"};
-  Param<bool> asPublished{
-      this, "as_published", false,
+  PublishedForm asPublished{
+      this,
       "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places; neighbours are found from the root by every fragment at every depth (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
   Param<Bricks> bricks{
       this, "bricks", Bricks::own,
@@ -314,11 +314,12 @@ class OctreePass : public Pass {
   }
   static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word, std::uint32_t& room,
                     std::uint32_t share, bool isRoom) {
-    frame.judgeLater(levels, word * sizeof(std::uint32_t), [=, &room](PassContext&, std::uint32_t wanted) {
-      if (wanted <= room) return true;
-      room = wanted + (share > 0 ? wanted / share : 0);
-      return !isRoom;
-    });
+    frame.checkAfterFrame(levels, word * sizeof(std::uint32_t),
+                          [=, &room](PassContext&, std::uint32_t wanted) {
+                            if (wanted <= room) return true;
+                            room = wanted + (share > 0 ? wanted / share : 0);
+                            return !isRoom;
+                          });
   }
 };
 

@@ -246,8 +246,8 @@ class InVoxels : public InBase {
   bool holds() const override { return false; }
 };
 
-/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the
-/// pipeline text.
+/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default, and where its
+/// paper says so the value that it has as published. Set from the pipeline text.
 class ParamBase {
  public:
   enum class Type { integer, number, flag, word };
@@ -257,19 +257,27 @@ class ParamBase {
   ParamBase& operator=(const ParamBase&) = delete;
   const std::string& name() const { return name_; }
   Type type() const { return type_; }
-  const std::string& meaning() const { return meaning_; }
+  virtual std::string meaning() const { return meaning_; }
   double low() const { return low_; }
   double high() const { return high_; }
   const std::vector<std::string>& choices() const { return choices_; }
   const std::string& unit() const { return unit_; }  ///< "", "m", "rad", "/m"
   virtual std::string valueText() const = 0;
   virtual std::string defaultText() const = 0;
+  virtual std::string publishedText() const = 0;  ///< empty: the paper does not say
+  /// A text gives the value, which `as_published` then must not change (Pass::applyPublished).
+  void state() { stated_ = true; }
+  bool isStated() const { return stated_; }
+  virtual void setDefault() = 0;
+  virtual void setPublished() = 0;  ///< precondition: there is a published value
   /// "must be a whole number in 1..32" when the value does not fit (it then stays as it was), else empty.
   /// Numbers arrive in base units.
   virtual std::string set(double number) = 0;
   virtual std::string set(const std::string& word) = 0;
 
  protected:
+  /// Of a parameter that has a published value, once it is constructed.
+  static void addPublishedForm(Pass* pass);
   double low_ = 0, high_ = 0;
   std::vector<std::string> choices_;
   std::string unit_;
@@ -277,7 +285,21 @@ class ParamBase {
  private:
   std::string name_, meaning_;
   Type type_;
+  bool stated_ = false;
 };
+
+/// The value that a parameter has in the paper: the last word of its declaration. A pass that declares one
+/// has the switch `as_published`, which sets them all.
+template <class T>
+struct PublishedValue {
+  T value;
+};
+template <class T>
+constexpr PublishedValue<T> published(T value) {
+  return {value};
+}
+template <class T>
+using MaybePublished = std::optional<PublishedValue<T>>;
 
 template <class T>
 struct ParamRange {
@@ -295,47 +317,61 @@ class Param;
 template <>
 class Param<int> : public ParamBase {
  public:
-  Param(Pass* pass, std::string name, int value, ParamRange<int> range, std::string meaning);
+  Param(Pass* pass, std::string name, int value, ParamRange<int> range, std::string meaning,
+        MaybePublished<int> printed = {});
   operator int() const { return value_; }
   std::string valueText() const override;
   std::string defaultText() const override;
+  std::string publishedText() const override;
+  void setDefault() override { value_ = default_; }
+  void setPublished() override { value_ = published_->value; }
   std::string set(double number) override;
   std::string set(const std::string& word) override;
 
  private:
   int value_, default_;
+  MaybePublished<int> published_;
 };
 
 template <>
 class Param<float> : public ParamBase {
  public:
   Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit,
-        std::string meaning);
+        std::string meaning, MaybePublished<float> printed = {});
   /// A pure number.
-  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string meaning)
-      : Param(pass, std::move(name), value, range, "", std::move(meaning)) {}
+  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string meaning,
+        MaybePublished<float> printed = {})
+      : Param(pass, std::move(name), value, range, "", std::move(meaning), printed) {}
   operator float() const { return value_; }
   std::string valueText() const override;
   std::string defaultText() const override;
+  std::string publishedText() const override;
+  void setDefault() override { value_ = default_; }
+  void setPublished() override { value_ = published_->value; }
   std::string set(double number) override;
   std::string set(const std::string& word) override;
 
  private:
   float value_, default_;
+  MaybePublished<float> published_;
 };
 
 template <>
 class Param<bool> : public ParamBase {
  public:
-  Param(Pass* pass, std::string name, bool value, std::string meaning);
+  Param(Pass* pass, std::string name, bool value, std::string meaning, MaybePublished<bool> printed = {});
   operator bool() const { return value_; }
   std::string valueText() const override;  ///< "on" or "off"
   std::string defaultText() const override;
+  std::string publishedText() const override;
+  void setDefault() override { value_ = default_; }
+  void setPublished() override { value_ = published_->value; }
   std::string set(double number) override;
   std::string set(const std::string& word) override;
 
  private:
   bool value_, default_;
+  MaybePublished<bool> published_;
 };
 
 /// What the compiler calls a value: "lobe" of lumivox::Gather::Lobe::lobe; empty for a number without a name.
@@ -351,12 +387,15 @@ class WordParam : public ParamBase {
  public:
   std::string valueText() const override { return choices_[value_]; }
   std::string defaultText() const override { return choices_[default_]; }
+  std::string publishedText() const override { return published_ ? choices_[*published_] : std::string(); }
+  void setDefault() override { value_ = default_; }
+  void setPublished() override { value_ = *published_; }
   std::string set(double number) override;
   std::string set(const std::string& word) override;
 
  protected:
   WordParam(Pass* pass, std::string name, std::size_t value, std::vector<std::string> words,
-            std::string meaning);
+            std::string meaning, std::optional<std::size_t> printed);
   /// The words of an enumeration from its value `kFirst` on.
   template <class Word, std::size_t kFirst = 0>
   static std::vector<std::string> wordsOf(std::vector<std::string> before = {}) {
@@ -370,6 +409,7 @@ class WordParam : public ParamBase {
   }
   static std::string wordOf(std::string_view name);
   std::size_t value_, default_;
+  std::optional<std::size_t> published_;
 };
 
 /// One word out of a few. The enumeration counts from 0, and texts call its values by their names in snake
@@ -380,10 +420,22 @@ class Param : public WordParam {
   static_assert(std::is_enum_v<Word>, "expected an enumeration, int, float or bool");
 
  public:
-  Param(Pass* pass, std::string name, Word value, std::string meaning)
-      : WordParam(pass, std::move(name), static_cast<std::size_t>(value), wordsOf<Word>(),
-                  std::move(meaning)) {}
+  Param(Pass* pass, std::string name, Word value, std::string meaning, MaybePublished<Word> printed = {})
+      : WordParam(pass, std::move(name), static_cast<std::size_t>(value), wordsOf<Word>(), std::move(meaning),
+                  printed ? std::optional(static_cast<std::size_t>(printed->value)) : std::nullopt) {}
   operator Word() const { return static_cast<Word>(value_); }
+};
+
+/// The switch `as_published`. Every pass with a published value has it; one is declared where the printed
+/// form differs in more than parameters have words for, which `more` tells. The pass then asks it.
+class PublishedForm : public Param<bool> {
+ public:
+  explicit PublishedForm(Pass* pass, std::string more = {});
+  std::string meaning() const override;  ///< with the words of all parameters that it sets
+
+ private:
+  const Pass& pass_;
+  std::string more_;
 };
 
 /// A resource that a pass carries from frame to frame.
@@ -413,12 +465,12 @@ class PassContext {
   /// Resources from the pool: contents are undefined. They return to the pool when the last reference goes.
   virtual gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) = 0;
   virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
-  /// Has a count that the device finds judged without any pass waiting for it: one word of a buffer, read
-  /// when the device has done the whole frame. `judge` returns false when the pass had taken too little room
+  /// Has a count that the device finds checked without any pass waiting for it: one word of a buffer, read
+  /// when the device has done the whole frame. `check` returns false when the pass had taken too little room
   /// for what it counts, and notes how much it needs; the frame is then rendered again from nothing before
   /// anything of it is given out. It may throw an Error and warn() through the context that it is given.
-  using CountJudge = std::function<bool(PassContext& frame, std::uint32_t count)>;
-  virtual void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) = 0;
+  using CountCheck = std::function<bool(PassContext& frame, std::uint32_t count)>;
+  virtual void checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) = 0;
   /// A warning to the user, once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
   /// A result that is made once and kept while it stays valid: that of make(), or of an earlier frame with
@@ -542,10 +594,18 @@ class Pass {
   const std::vector<OutBase*>& outputs() const { return outputs_; }
   const std::vector<ParamBase*>& parameters() const { return parameters_; }
 
+  /// With `as_published on` gives every parameter its published value, and with `off` its default, but for
+  /// those that a text states. In words what contradicts `on`; else empty. By the framework, once parameters
+  /// are set.
+  std::string applyPublished();
+
  private:
   friend class OutBase;
   friend class InBase;
   friend class ParamBase;
+  friend class PublishedForm;
+  PublishedForm* publishedForm_ = nullptr;  ///< the last of `parameters_`
+  std::unique_ptr<PublishedForm> ownPublishedForm_;
   std::vector<InBase*> inputs_;
   std::vector<OutBase*> outputs_;
   std::vector<ParamBase*> parameters_;

@@ -6,8 +6,6 @@
 
 #include "lumivox/pipeline/ports/attribute_grid.h"
 #include "lumivox/pipeline/ports/binary_grid.h"
-#include "lumivox/pipeline/ports/element_light.h"
-#include "lumivox/pipeline/ports/element_links.h"
 #include "lumivox/pipeline/ports/g_buffer.h"
 #include "lumivox/pipeline/ports/image.h"
 #include "lumivox/pipeline/ports/occupancy_grid.h"
@@ -17,10 +15,7 @@
 #include "lumivox/pipeline/ports/scattering_grid.h"
 #include "lumivox/pipeline/ports/sh_grid.h"
 #include "lumivox/pipeline/ports/shadow_map.h"
-#include "lumivox/pipeline/ports/sparse_light.h"
-#include "lumivox/pipeline/ports/surface_elements.h"
 #include "lumivox/pipeline/ports/surface_lights.h"
-#include "lumivox/pipeline/ports/surface_points.h"
 #include "lumivox/pipeline/ports/voxel_fragments.h"
 
 namespace lumivox {
@@ -33,7 +28,6 @@ struct PortList {
 };
 using FrameworkPorts =
     PortList<Image, GBuffer, ShadowMap, ReflectiveShadowMap, VoxelFragments, OccupancyGrid, BinaryGrid,
-             AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid, SurfaceElements, ElementLinks,
-             ElementLight, SurfacePoints, SurfaceLights, SparseLight>;
+             AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid, SurfaceLights>;
 
 }  // namespace lumivox

@@ -72,12 +72,6 @@ class ReflectiveShadowMapBinding : public shader::BindingSet {
   explicit ReflectiveShadowMapBinding(const ReflectiveShadowMap& map);
 };
 
-/// Points spread over the surfaces, with their look-up grid (common/surface_points.glsl).
-class SurfacePointsBinding : public shader::BindingSet {
- public:
-  explicit SurfacePointsBinding(const SurfacePoints& points);
-};
-
 /// A list of fragments and their number (common/fragments.glsl).
 class FragmentBinding : public shader::BindingSet {
  public:

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "lumivox/scene/scene.h"
-#include "lumivox/scene/surface_points.h"
+#include "surface_points.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
 /// A triangle at rest in the world.
 struct Facet {
@@ -35,4 +35,4 @@ struct SurfaceCandidates {
 SurfaceCandidates candidatesOn(const Scene& scene, const std::vector<Facet>& facets, std::size_t count,
                                const glm::dvec3& base);
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
 class NearPlaces {
  public:
@@ -73,4 +73,4 @@ class NearPlaces {
   std::vector<Entry> entries_;
 };
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

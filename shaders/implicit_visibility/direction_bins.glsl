@@ -1,4 +1,4 @@
-// Directions in the bins of a cube: what lumivox/scene/direction_bins.h describes. Centres and solid angles are in the
+// Directions in the bins of a cube: what techniques/implicit_visibility/links/direction_bins.h describes. Centres and solid angles are in the
 // buffer `directions` of ElementLinks.
 
 /// The bin of a direction of any length above 0.

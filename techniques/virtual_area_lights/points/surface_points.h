@@ -9,7 +9,7 @@
 #include "lumivox/scene/grid.h"
 #include "lumivox/scene/scene.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
 /// A place on a triangle, which follows whatever the triangle does.
 struct SurfacePlace {
@@ -47,7 +47,7 @@ struct SurfacePointSettings {
 };
 
 /// A surface's neighbours lie on its own side: normals at a larger angle are of the other one, 2/3 pi.
-/// kOtherSideCosine of shaders/common/surface_points.glsl.
+/// kOtherSideCosine of shaders/virtual_area_lights/surface_points.glsl.
 inline constexpr float kOtherSideCosine = -0.5f;
 
 /// Candidates from which each point is chosen, in the mean.
@@ -82,4 +82,4 @@ struct SurfacePointGrid {
 };
 SurfacePointGrid gridOf(const SurfacePointSet& set, const SurfacePointState& state);
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/scene/element_tree.h"
+#include "element_tree.h"
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 /// The surface as discs, and trees above them (Dong, Kautz, Theobalt and Seidel 2007, Sec. 4.1). The textures
 /// hold all nodes, numbered as in ElementTree: node i is texel (i % kWidth, i / kWidth).
@@ -24,8 +24,12 @@ struct SurfaceElements {
   static glm::ivec2 sizeFor(int nodes) { return {kWidth, std::max((nodes + kWidth - 1) / kWidth, 1)}; }
 };
 
+}  // namespace lumivox::implicit_visibility
+
+namespace lumivox {
+
 template <>
-struct PortTraits<SurfaceElements> {
+struct PortTraits<implicit_visibility::SurfaceElements> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     return {"SurfaceElements",
@@ -40,7 +44,7 @@ struct PortTraits<SurfaceElements> {
               "xyz radiance from the front, W/(sr m^2), mean by area; w 0; of groups 0"},
              {"children", "buffer", "uvec4 for each node above the leaves: its children, 2^32 - 1: none"}}};
   }
-  static void contents(const SurfaceElements& port, PortContents& contents) {
+  static void contents(const implicit_visibility::SurfaceElements& port, PortContents& contents) {
     contents.texture("position", port.position);
     contents.texture("normal", port.normal);
     contents.texture("albedo", port.albedo);

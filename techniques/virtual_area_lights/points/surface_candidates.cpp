@@ -1,4 +1,4 @@
-#include "scene/surface_candidates.h"
+#include "surface_candidates.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "lumivox/scene/bilinear.h"
 #include "lumivox/scene/topology.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 namespace {
 
 /// Whether each edge of a component is passed as often one way as the other, so that all its triangles face
@@ -128,4 +128,4 @@ SurfaceCandidates candidatesOn(const Scene& scene, const std::vector<Facet>& fac
   return made;
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

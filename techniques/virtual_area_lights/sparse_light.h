@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/pipeline/ports/surface_points.h"
+#include "points/surface_points_port.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
 /// The light of many small lights as one for each point of SurfacePoints and lobe (Lensing and Broll 2013,
 /// Sec. 3.2). Point i is texel (i % kWidth, i / kWidth).
@@ -13,8 +13,12 @@ struct SparseLight {
   gpu::TextureRef glossy, glossyPosition;  ///< null where nothing is glossy
 };
 
+}  // namespace lumivox::virtual_area_lights
+
+namespace lumivox {
+
 template <>
-struct PortTraits<SparseLight> {
+struct PortTraits<virtual_area_lights::SparseLight> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     return {
@@ -29,7 +33,7 @@ struct PortTraits<SparseLight> {
           "the same for the Phong lobe towards the camera; w 1 + exponent of the lobe, 0 without one"},
          {"glossyPosition", "d2 rgba32f, a texel a point", "the same for the Phong lobe", kAny}}};
   }
-  static void contents(const SparseLight& port, PortContents& contents) {
+  static void contents(const virtual_area_lights::SparseLight& port, PortContents& contents) {
     contents.texture("diffuse", port.diffuse);
     contents.texture("diffusePosition", port.diffusePosition);
     contents.texture("glossy", port.glossy);

@@ -1,8 +1,8 @@
-#include "lumivox/scene/element_tree.h"
+#include "element_tree.h"
 
 #include <algorithm>
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 QuadtreeNumbers::QuadtreeNumbers(std::uint32_t leaves) : first_{0} {
   for (std::uint32_t size = leaves; size > 0; size = size == 1 ? 0 : (size + 3) / 4)
@@ -30,4 +30,4 @@ std::uint32_t QuadtreeNumbers::childCount(std::uint32_t node) const {
   return level == 0 ? 0 : std::min(levelSize(level - 1) - 4 * (node - first_[level]), 4u);
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::implicit_visibility

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/pipeline/ports/surface_elements.h"
+#include "../elements/surface_elements.h"
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 /// Light at surface elements (SurfaceElements), on both sides. Texel k of a texture is at (k % kWidth, k /
 /// kWidth). Irradiance: that of leaf i, at its front, is texel 2 i, that at its back texel 2 i + 1. Radiance:
@@ -18,7 +18,7 @@ struct ElementLight {
   gpu::TextureRef radiance;  ///< reflected, of as many bounces as reach the surface that is seen
   gpu::TextureRef emission;  ///< emitted; null like directIrradiance
   /// What nodes with a glossy leaf reflect by their Phong lobes, beside `radiance`: a row of texels for each
-  /// of them, one for each direction of an even cube of bins (scene/direction_bins.h). Null where nothing
+  /// of them, one for each direction of an even cube of bins (direction_bins.h). Null where nothing
   /// passes such light on.
   gpu::TextureRef outgoing;
   gpu::BufferRef outgoingRows;  ///< of each node its row, kNoElement: none; null like `outgoing`
@@ -30,8 +30,12 @@ struct ElementLight {
   }
 };
 
+}  // namespace lumivox::implicit_visibility
+
+namespace lumivox {
+
 template <>
-struct PortTraits<ElementLight> {
+struct PortTraits<implicit_visibility::ElementLight> {
   static PortKind kind() {
     return {
         "ElementLight",
@@ -46,7 +50,7 @@ struct PortTraits<ElementLight> {
           "xyz radiance that its Phong lobe reflects in a direction, W/(sr m^2)"},
          {"outgoingRows", "buffer", "word a node: its row in `outgoing`; 2^32 - 1: none"}}};
   }
-  static void contents(const ElementLight& port, PortContents& contents) {
+  static void contents(const implicit_visibility::ElementLight& port, PortContents& contents) {
     contents.texture("irradiance", port.irradiance);
     contents.texture("directIrradiance", port.directIrradiance);
     contents.texture("radiance", port.radiance);

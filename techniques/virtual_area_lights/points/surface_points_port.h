@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/scene/surface_points.h"
+#include "surface_points.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
-/// Points spread over the surfaces, which move with them (scene/surface_points.h). Point i is texel (i %
+/// Points spread over the surfaces, which move with them (surface_points.h). Point i is texel (i %
 /// kWidth, i / kWidth); texels behind the last one hold zeros. The grid lists, cell by cell, every point that
 /// may be among the `neighbours` nearest of some place of the surface in the cell, of any model and on either
-/// side; cells are numbered with x fastest. GLSL side: shaders/common/surface_points.glsl.
+/// side; cells are numbered with x fastest. GLSL side: shaders/virtual_area_lights/surface_points.glsl.
 struct SurfacePoints {
   static constexpr int kWidth = 1024;
   gpu::TextureRef position, normal, radius;
@@ -28,8 +28,12 @@ struct SurfacePoints {
   static glm::ivec2 sizeFor(int points) { return {kWidth, std::max((points + kWidth - 1) / kWidth, 1)}; }
 };
 
+}  // namespace lumivox::virtual_area_lights
+
+namespace lumivox {
+
 template <>
-struct PortTraits<SurfacePoints> {
+struct PortTraits<virtual_area_lights::SurfacePoints> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     return {
@@ -45,7 +49,7 @@ struct PortTraits<SurfacePoints> {
          {"cells", "buffer", "uint a cell: where its list begins in `candidates`; and one more"},
          {"candidates", "buffer", "uint each: numbers of points, growing in a cell"}}};
   }
-  static void contents(const SurfacePoints& port, PortContents& contents) {
+  static void contents(const virtual_area_lights::SurfacePoints& port, PortContents& contents) {
     contents.texture("position", port.position);
     contents.texture("normal", port.normal);
     contents.texture("radius", port.radius);

@@ -5,10 +5,10 @@
 #include <span>
 
 #include "lumivox/pipeline/port.h"
-#include "lumivox/scene/direction_bins.h"
-#include "lumivox/scene/element_tree.h"
+#include "direction_bins.h"
+#include "../elements/element_tree.h"
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 /// What an element sees in a bin: another element, from which side, and how far away it is. Two words of the
 /// device.
@@ -57,8 +57,12 @@ struct ElementLinks {
   gpu::BufferRef lights;  ///< null where nothing emits
 };
 
+}  // namespace lumivox::implicit_visibility
+
+namespace lumivox {
+
 template <>
-struct PortTraits<ElementLinks> {
+struct PortTraits<implicit_visibility::ElementLinks> {
   static PortKind kind() {
     return {
         "ElementLinks",
@@ -75,7 +79,7 @@ struct PortTraits<ElementLinks> {
           "uvec2 a leaf: where its list begins, counted in words of this buffer, and its length; then the lists: "
           "numbers of links to nodes that emit, growing"}}};
   }
-  static void contents(const ElementLinks& port, PortContents& contents) {
+  static void contents(const implicit_visibility::ElementLinks& port, PortContents& contents) {
     contents.buffer("first", port.first);
     contents.buffer("links", port.links);
     contents.buffer("lights", port.lights);

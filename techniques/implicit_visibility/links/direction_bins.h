@@ -1,5 +1,5 @@
 // Directions in the bins of a cube: 6 x N x N of them, aligned with the axes of the world (Dong, Kautz,
-// Theobalt and Seidel 2007, Sec. 4.2.2). shaders/common/direction_bins.glsl has the same for shaders; a test
+// Theobalt and Seidel 2007, Sec. 4.2.2). shaders/implicit_visibility/direction_bins.glsl has the same for shaders; a test
 // compares them.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 /// even: borders at equal angles as seen along the middle of a face (the tangent of equal steps), so that
 /// bins have nearly the same solid angle. uniform: borders at equal steps on the face, as published; bins at
@@ -56,4 +56,4 @@ struct BinTable {
   float projectionScale(const glm::vec3& normal) const;
 };
 
-}  // namespace lumivox
+}  // namespace lumivox::implicit_visibility

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 
 inline constexpr std::uint32_t kNoElement = 0xffffffffu;
 
@@ -101,4 +101,4 @@ struct ElementState {
   }
 };
 
-}  // namespace lumivox
+}  // namespace lumivox::implicit_visibility

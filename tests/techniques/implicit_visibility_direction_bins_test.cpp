@@ -2,13 +2,14 @@
 #include <random>
 
 #include "lumivox/base/file.h"
-#include "lumivox/scene/direction_bins.h"
+#include "../../techniques/implicit_visibility/links/direction_bins.h"
 #include "support/gpu_programs.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using namespace lumivox::gpu;
 using namespace lumivox::test;
+using namespace lumivox::implicit_visibility;
 
 TEST_CASE("a shader finds the same bin of a direction, and the same middle of a bin, as C++ does") {
   constexpr int kDirections = 4096;
@@ -17,7 +18,7 @@ TEST_CASE("a shader finds the same bin of a direction, and the same middle of a 
   std::normal_distribution<float> number;
   while (directions.size() < kDirections)
     directions.emplace_back(number(random), number(random), number(random), 0.0f);
-  const std::string functions = readFile(sourceDirectory() / "shaders/common/direction_bins.glsl");
+  const std::string functions = readFile(sourceDirectory() / "shaders/implicit_visibility/direction_bins.glsl");
   for (const BinMapping mapping : {BinMapping::even, BinMapping::uniform})
     for (const int side : {1, 8, 12}) {
       const DirectionBins bins(side, mapping);

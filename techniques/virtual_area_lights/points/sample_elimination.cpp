@@ -1,12 +1,12 @@
-#include "scene/sample_elimination.h"
+#include "sample_elimination.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "scene/near_places.h"
+#include "near_places.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 namespace {
 
 /// The most crowded sample first; of equals the later one. Each knows where it stands, so that it can move
@@ -117,4 +117,4 @@ std::vector<std::uint32_t> eliminateSamples(const SurfaceCandidates& candidates,
   return kept;
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

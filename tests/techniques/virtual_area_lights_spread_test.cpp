@@ -9,12 +9,13 @@
 #include <random>
 
 #include "lumivox/scene/models.h"
-#include "lumivox/scene/surface_points.h"
+#include "../../techniques/virtual_area_lights/points/surface_points.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
+using namespace lumivox::virtual_area_lights;
 
 namespace {
 

@@ -19,9 +19,9 @@ layout(binding = 10) uniform sampler2D pointRadius;   // x radius, m; y Phong ex
 
 ivec2 pointTexel(uint point) { return ivec2(point % kPointsInRow, point / kPointsInRow); }
 
-// Normals at a larger angle are of another side of the surface; C++ side: framework/include/lumivox/scene/surface_points.h.
+// Normals at a larger angle are of another side of the surface; C++ side: techniques/virtual_area_lights/points/surface_points.h.
 const float kOtherSideCosine = -0.5;
-// From this cosine on normals face alike; less is across an edge. C++ side: framework/src/scene/surface_points.cpp.
+// From this cosine on normals face alike; less is across an edge. C++ side: techniques/virtual_area_lights/points/surface_points.cpp.
 const float kAlikeCosine = 0.05;
 
 #ifdef POINT_CANDIDATES

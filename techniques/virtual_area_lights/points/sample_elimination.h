@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "scene/surface_candidates.h"
+#include "surface_candidates.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 
 /// Weighted sample elimination (Yuksel 2015): of the candidates, in their order, those that are left once the
 /// most crowded has been taken away again and again, until what is left weighs at most `most`, or is one.
@@ -16,4 +16,4 @@ namespace lumivox {
 std::vector<std::uint32_t> eliminateSamples(const SurfaceCandidates& candidates, std::span<const int> weights,
                                             std::size_t most);
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

@@ -1,4 +1,4 @@
-#include "lumivox/scene/surface_points.h"
+#include "surface_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "lumivox/scene/models.h"
-#include "scene/near_places.h"
-#include "scene/sample_elimination.h"
-#include "scene/surface_candidates.h"
+#include "near_places.h"
+#include "sample_elimination.h"
+#include "surface_candidates.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 namespace {
 
 /// From this cosine on normals face alike; less is across an edge. kAlikeCosine of
-/// shaders/common/surface_points.glsl.
+/// shaders/virtual_area_lights/surface_points.glsl.
 constexpr float kAlikeCosine = 0.05f;
 
 /// The points among `candidates` of one model, with what belongs to each of them.
@@ -213,4 +213,4 @@ SurfacePointSet spreadSurfacePoints(const Scene& scene, const SurfacePointSettin
   return set;
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "lumivox/scene/surface_points.h"
+#include "surface_points.h"
 
-namespace lumivox {
+namespace lumivox::virtual_area_lights {
 namespace {
 
 /// An object's vertices at a moment.
@@ -210,4 +210,4 @@ SurfacePointGrid gridOf(const SurfacePointSet& set, const SurfacePointState& sta
   return grid;
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::virtual_area_lights

@@ -1,10 +1,10 @@
-#include "lumivox/scene/direction_bins.h"
+#include "direction_bins.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace lumivox {
+namespace lumivox::implicit_visibility {
 namespace {
 
 constexpr double kEighth = 0.25 * std::numbers::pi;  // of a turn: half the angle that a face spans
@@ -66,4 +66,4 @@ float BinTable::projectionScale(const glm::vec3& normal) const {
   return sum > 0.0 ? static_cast<float>(std::numbers::pi / sum) : 0.0f;
 }
 
-}  // namespace lumivox
+}  // namespace lumivox::implicit_visibility
