@@ -10,7 +10,7 @@
 namespace lumivox {
 namespace {
 
-constexpr const char* kLook =
+constexpr const char* kStyle =
     "  graph [bgcolor=white fontname=Helvetica fontsize=12 nodesep=0.3 ranksep=0.45]\n"
     "  node [shape=box style=filled fillcolor=\"#eef3f8\" color=\"#1f6fb2\" fontname=Helvetica fontsize=12]\n"
     "  edge [color=\"#1f6fb2\" fontname=Helvetica fontsize=11 arrowsize=0.7]\n";
@@ -19,7 +19,7 @@ constexpr const char* kLeftOut = " style=dashed color=\"#8a8a8a\" fontcolor=\"#6
 constexpr std::size_t kReasonWidth = 30;
 
 /// A word of Graphviz, which reads entities of HTML in it.
-std::string quoted(const std::string& text) {
+std::string dotString(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -86,10 +86,10 @@ class Drawing {
       const std::string id = "output " + output.name;
       const std::string why = reasons_.ofOutput(graph_.outputText(output.source));
       const bool leftOut = !why.empty() || !reasons_.ofPass(passOf(output.source)).empty();
-      text_ += fmt::format("  {} [label={} shape=ellipse{}]\n", quoted(id), quoted(output.name + broken(why)),
-                           leftOut ? kLeftOut : "");
+      text_ += fmt::format("  {} [label={} shape=ellipse{}]\n", dotString(id),
+                           dotString(output.name + broken(why)), leftOut ? kLeftOut : "");
       arrow(output.source, id, graph_.output(output.source).name(), false, {});
-      ends += " " + quoted(id);
+      ends += " " + dotString(id);
     }
     text_ += "  {rank=sink" + ends + "}\n";
     return text_;
@@ -103,7 +103,7 @@ class Drawing {
   void box(const BoundPass& pass) {
     const std::string why = reasons_.ofPass(pass.name);
     const std::string label = fmt::format("{}\n{}.{}{}", pass.name, pass.technique, pass.pass, broken(why));
-    text_ += fmt::format("  {} [label={}{}]\n", quoted("pass " + pass.name), quoted(label),
+    text_ += fmt::format("  {} [label={}{}]\n", dotString("pass " + pass.name), dotString(label),
                          why.empty() ? "" : kLeftOut);
   }
 
@@ -115,9 +115,9 @@ class Drawing {
     if (why.empty()) why = reasons_.ofOutput(graph_.outputText(source));
     std::string label = output.name() == input ? input : output.name() + " \u2192 " + input;
     if (history) label += " \n (frame before)";
-    text_ += fmt::format("  {} -> {} [label={} tooltip={}{}{}]\n", quoted("pass " + passOf(source)),
-                         quoted(reader), quoted(" " + label + " "),
-                         quoted(output.kind().name + (why.empty() ? "" : ": " + why)),
+    text_ += fmt::format("  {} -> {} [label={} tooltip={}{}{}]\n", dotString("pass " + passOf(source)),
+                         dotString(reader), dotString(" " + label + " "),
+                         dotString(output.kind().name + (why.empty() ? "" : ": " + why)),
                          history ? " constraint=false" : "", why.empty() ? "" : kLeftOut);
   }
 
@@ -132,8 +132,8 @@ std::string graphText(const Pipeline& pipeline, TechniqueSource& techniques, con
                       const Explanation& explanation, const std::string& scene) {
   const BoundGraph graph = bindPipeline(pipeline, techniques, settings);
   const Reasons reasons(explanation);
-  return fmt::format("digraph {} {{\n{}  label={}\n{}}}\n", quoted(pipeline.name), kLook,
-                     quoted(fmt::format("{}, on the scene {}", pipeline.name, scene)),
+  return fmt::format("digraph {} {{\n{}  label={}\n{}}}\n", dotString(pipeline.name), kStyle,
+                     dotString(fmt::format("{}, on the scene {}", pipeline.name, scene)),
                      Drawing(graph, reasons).text());
 }
 
