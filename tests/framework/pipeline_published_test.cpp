@@ -100,13 +100,17 @@ TEST_CASE("as_published is refused beside another value, with both of them") {
                       "expected the published value, or none"));
 }
 
-TEST_CASE("a parameter of the pipeline states a value where it is not the default of the pass") {
+TEST_CASE(
+    "a parameter of the pipeline states a value where it is not the default of the pass, and a caller has the last word") {
   const std::string head = "param taps 9 in 1..64\nparam printed off\n";
   const std::string words = "taps $taps  as_published $printed";
   ParameterValue on;
   on.word = "on";
   CHECK(valueWith(words, head, {{"printed", on}}) == kTheirs);
   CHECK(valueWith(words, head) == kOurs);
+  // What the text says gives way to a caller who wants the printed form.
+  CHECK(valueWith(words + "  kernel smooth", head, {{"printed", on}}) == kTheirs);
+  CHECK(valueWith(words + "  kernel smooth  rounds 2", head) == kOurs);
   ParameterValue five;
   five.number = 5;
   CHECK_THAT(messageOf<DiagnosticsError>([&] {

@@ -288,6 +288,7 @@ TEST_CASE(
         gatherer.at(above, down)
             .with({{"tolerance", one.tolerance},
                    {"front", 0, one.front},
+                   {"hit", 0, printed ? "printed" : "centre"},
                    {"as_published", 0, printed ? "on" : "off"}});
         CAPTURE(one.cosine, one.tolerance, one.front, printed, share, width);
         CHECK((gatherer.run()[0] > 0.0f) == (share < 1.0));
@@ -321,7 +322,10 @@ TEST_CASE("as printed a spot slants its texels by its one direction, and here by
           voxel.gatherer(mapOf(scene, kSide, glm::vec4(glm::vec3(centre - distance * toLight), 1.0f),
                                glm::vec4(glm::vec3(normal), 1.0f), fluxOf(5.0f)));
       gatherer.at(above, down)
-          .with({{"tolerance", 1.0}, {"front", 0, "on"}, {"as_published", 0, asPrinted ? "on" : "off"}});
+          .with({{"tolerance", 1.0},
+                 {"front", 0, "on"},
+                 {"hit", 0, asPrinted ? "printed" : "centre"},
+                 {"as_published", 0, asPrinted ? "on" : "off"}});
       CAPTURE(asPrinted, distance, ours, printed);
       CHECK((gatherer.run()[0] > 0.0f) == (distance < (asPrinted ? printed : ours)));
     }
@@ -343,6 +347,7 @@ TEST_CASE("as printed a surface must look to the receiver's place, and here to w
           .with({{"tolerance", 1.0},
                  {"cap", 0},
                  {"front", 0, "on"},
+                 {"hit", 0, asPrinted ? "printed" : "centre"},
                  {"as_published", 0, asPrinted ? "on" : "off"}});
       CAPTURE(leaning, asPrinted);
       CHECK((gatherer.run()[0] > 0.0f) == (asPrinted ? printed : ours));

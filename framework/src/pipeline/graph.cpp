@@ -127,6 +127,7 @@ class Binder {
     const PassText& text = pipeline_.passes[static_cast<std::size_t>(index)];
     Pass& pass = *graph_.passes[static_cast<std::size_t>(index)].object;
     const std::size_t findingsBefore = findings_.size();
+    saidOf_.clear();
     std::set<std::string> given;
     for (const dsl::Item& item : text.block->items) {
       if (item.block) {
@@ -150,6 +151,7 @@ class Binder {
       }
     }
     if (findings_.size() == findingsBefore) {
+      stateWhatIsSaid(pass);
       std::string contradiction = pass.applyPublished();
       if (contradiction.empty()) contradiction = pass.checkParameters();
       if (!contradiction.empty())
@@ -380,7 +382,7 @@ class Binder {
                fmt::format("parameter '{}' is {}, which does not fit", parameter.name(), constant->text()),
                misfitExpectation(misfit));
       }
-      parameter.state();
+      saidOf_[&parameter] = Said::byText;
       return;
     }
     const PipelineParameter* declared = findParameter(pipeline_, value.text);
@@ -412,7 +414,20 @@ class Binder {
              misfitExpectation(misfit));
     }
     // A pipeline hands all of its parameters on; those at the default of the pass state nothing.
-    if (parameter.valueText() != parameter.defaultText()) parameter.state();
+    if (parameter.valueText() != parameter.defaultText())
+      saidOf_[&parameter] = given == values_.end() ? Said::byText : Said::byCaller;
+  }
+
+  /// What the text says gives way to `as_published` where the caller turned that on, and stands beside it
+  /// where the text did.
+  void stateWhatIsSaid(Pass& pass) {
+    Said form = Said::byText;
+    for (const ParamBase* parameter : pass.parameters())
+      if (parameter->name() == "as_published" && saidOf_.contains(parameter)) form = saidOf_.at(parameter);
+    for (ParamBase* parameter : pass.parameters()) {
+      const auto said = saidOf_.find(parameter);
+      if (said != saidOf_.end() && said->second >= form) parameter->state();
+    }
   }
 
   static std::string tryValue(ParamBase& parameter, const ParameterValue& value) {
@@ -509,6 +524,9 @@ class Binder {
   const ParameterValues& values_;
   BoundGraph graph_;
   std::vector<Diagnostic> findings_;
+  /// Who gives a parameter of the pass that is bound its value; the later one has the last word.
+  enum class Said { byText, byCaller };
+  std::map<const ParamBase*, Said> saidOf_;
   std::set<std::string> missingReported_, unknownReported_;
 };
 
