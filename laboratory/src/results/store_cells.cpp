@@ -120,8 +120,7 @@ void ResultsStore::add(const std::vector<PeakRate>& peakRates) {
 
 std::vector<PeakRate> ResultsStore::peakRates() const {
   std::vector<PeakRate> peakRates;
-  Statement row(state_->database,
-                "SELECT record FROM peak_rates ORDER BY device, driver, shader_input, host, name");
+  Statement row(state_->database, "SELECT record FROM peak_rates ORDER BY device, name, id");
   while (row.step()) peakRates.push_back(results::recordFrom<PeakRate>(row.text(0)));
   return peakRates;
 }
