@@ -62,10 +62,11 @@ bool isChapter(const fs::path& card) {
                   "\n| [" + folder + "](" + folder + "/README.md) | ");
 }
 
-/// A text without what stands from "<!-- reproduced" or "<!-- measured" to "<!-- end -->".
+/// A text without what stands from "<!-- reproduced", "<!-- measured" or "<!-- results store" to "<!-- end
+/// -->".
 std::string withoutGenerated(std::string text) {
   static const std::string kEnd = "<!-- end -->";
-  for (const std::string begin : {"<!-- reproduced ", "<!-- measured "})
+  for (const std::string begin : {"<!-- reproduced ", "<!-- measured ", "<!-- results store"})
     for (std::size_t from = text.find(begin); from != std::string::npos; from = text.find(begin, from)) {
       const std::size_t end = text.find(kEnd, from);
       if (end == std::string::npos) break;

@@ -8,11 +8,13 @@
 
 #include "command.h"
 #include "common/named_texts.h"
+#include "common/outputs.h"
 #include "common/reasons.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/needs.h"
+#include "lumivox/experiment/pipeline_graph.h"
 #include "lumivox/results/json.h"
 #include "lumivox/results/text.h"
 
@@ -22,6 +24,7 @@ namespace {
 struct ExplainCommand {
   std::vector<std::filesystem::path> texts;      ///< scenes and pipelines, as they come
   std::vector<std::filesystem::path> pipelines;  ///< of --pipeline
+  std::filesystem::path graph;                   ///< empty: none
   RunOptions run;
   int repeats = 5;
   bool all = false, noTimes = false, json = false;
@@ -199,6 +202,21 @@ std::vector<std::filesystem::path> allScenes() {
   return files;
 }
 
+/// The file of --graph, checked; everything that it needs is there.
+Outputs graphOutput(const ExplainCommand& command, const ReportOptions& options, bool one) {
+  Outputs outputs;
+  outputs.add("--graph", command.graph, {".svg", ".dot", ".gv"});
+  if (command.graph.empty()) return outputs;
+  if (!one) throw Error("--graph draws one pipeline on one scene; expected one scene and one pipeline");
+  outputs.check({options.scenes.front(), options.pipelines.front()});
+  try {
+    if (command.graph.extension() == ".svg") dotProgram();
+  } catch (const AbsentError& absent) {
+    throw AbsentError(fmt::format("--graph: {}", absent.what()));
+  }
+  return outputs;
+}
+
 int explain(const ExplainCommand& command, const GlobalOptions& global) {
   ReportOptions options;
   for (const std::filesystem::path& text : command.texts)
@@ -215,6 +233,7 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
   options.seed = command.run.seed;
   std::tie(options.width, options.height) = command.run.size();
   options.repeats = command.noTimes ? 0 : command.repeats;
+  const Outputs outputs = graphOutput(command, options, one);
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
@@ -224,11 +243,21 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
         command.noTimes ? "" : ", and timed (--no-times is much faster)");
   Progress progress("explain", 0, "cells");
   const std::vector<NeededCell> cells = measureNeeded(
-      *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },
+      *device, techniques, options,
+      [&](const std::filesystem::path& file) {
+        Scene scene = global.loadScene(file);
+        outputs.requireUnread();
+        return scene;
+      },
       [&](std::size_t done, std::size_t total) {
         if (total > 1) progress.show(done, total, std::numeric_limits<double>::quiet_NaN());
       });
   if (one && !cells.front().record) throw Error(cells.front().absent);
+  if (!command.graph.empty()) {
+    const Pipeline pipeline = Pipeline::load(options.pipelines.front());
+    writeGraph(command.graph, graphText(pipeline, techniques, pipeline.settings(options.settings),
+                                        cells.front().record->explanation, stem(cells.front().scene)));
+  }
   if (command.json)
     printJson(one ? toJson(*cells.front().record) : matrixJson(cells));
   else
@@ -256,6 +285,8 @@ void addExplainCommand(Commands& commands) {
   command->add_flag("--all", options->all, "every committed scene, as a matrix");
   command->add_flag("--no-times", options->noTimes,
                     "only what is left out and whether the image is the same; much faster");
+  command->add_option("--graph", options->graph,
+                      "draws the pipeline, grey where it is left out: .svg (needs Graphviz), .dot or .gv");
   options->run.addTo(*command);
   command->add_option("--repeats", options->repeats, "timed frames of each kind (default 5)")
       ->check(CLI::Range(1, 10000));

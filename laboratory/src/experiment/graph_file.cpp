@@ -1,0 +1,65 @@
+// The file of a graph: Graphviz draws it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <span>
+#include <sstream>
+
+#include "base/child.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/experiment/pipeline_graph.h"
+
+namespace lumivox {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// s; a committed pipeline takes less than one.
+constexpr double kPatience = 60.0;
+
+/// Two hyphens would end a comment, or make it none.
+std::string comment(std::string text) {
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at))
+    text.replace(at, 2, "- -");
+  return "<!--\n" + text + "-->\n";
+}
+
+}  // namespace
+
+fs::path dotProgram() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path program = fs::path(folder.empty() ? "." : folder) / "dot";
+    std::error_code ignored;
+    if (fs::is_regular_file(program, ignored) && access(program.c_str(), X_OK) == 0) return program;
+  }
+  throw AbsentError(
+      "dot, which draws graphs, is not on the PATH; install it (Debian: apt-get install graphviz), or write "
+      "the graph's text (.dot)");
+}
+
+void writeGraph(const fs::path& file, const std::string& text) {
+  if (file.extension() != ".svg") return writeFileAtomically(file, text);
+  Child dot({dotProgram().string(), "-Tsvg"}, {});
+  dot.write(std::as_bytes(std::span(text)));
+  dot.closeInput();
+  std::string svg;
+  for (Child::Answer answer; (answer = dot.receive(kPatience)).state != Child::State::ended;) {
+    if (answer.state == Child::State::silent)
+      throw Error(fmt::format("{}: dot has drawn nothing for {:.0f} s", file.string(), kPatience));
+    svg += answer.line + "\n";
+  }
+  if (!dot.succeeded()) {
+    const std::string words = dot.lastWords();
+    throw Error(fmt::format("{}: dot {}{}", file.string(), dot.ending(),
+                            words.empty() ? ", without a word" : ": " + words));
+  }
+  const std::size_t picture = svg.find("<svg");
+  if (picture == std::string::npos) throw Error(fmt::format("{}: dot wrote no picture", file.string()));
+  writeFileAtomically(file, svg.insert(picture, comment(text)));
+}
+
+}  // namespace lumivox
