@@ -1,6 +1,7 @@
 // Colours at vertices, as the paper shows light (Dong et al. 2007, Sec. 4.3.1).
 #pragma once
 
+#include "elements/surface_elements.h"
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::implicit_visibility {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "elements/surface_elements.h"
 #include "forest.h"
 #include "lumivox/plugin/technique.h"
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "implicit_visibility_shaders.h"
+#include "links/element_light.h"
+#include "links/element_links.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 

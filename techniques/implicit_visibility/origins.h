@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/scene/atlas.h"
 #include "elements/element_tree.h"
+#include "lumivox/scene/atlas.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox::implicit_visibility {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "links/direction_bins.h"
 #include "elements/element_tree.h"
+#include "links/direction_bins.h"
 
 namespace lumivox::implicit_visibility {
 

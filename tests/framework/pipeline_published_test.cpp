@@ -47,15 +47,13 @@ std::vector<std::string> namesOf(const Pass& pass) {
 
 /// The one value of the image of a pass with these words; `head` stands before it in the pipeline.
 float valueWith(const std::string& words, const std::string& head = {}, const ParameterValues& values = {}) {
-  static const Scene scene;
-  TestTechniques techniques;
-  techniques.add<Printed>("toy", "printed");
+  Fixture f;
+  REQUIRE(f);
+  f.techniques.add<Printed>("toy", "printed");
   RenderOptions options;
   options.width = options.height = 1;
   options.parameters = values;
-  static gpu::Device device;
-  const Pipeline pipeline = pipelineOf(head + "pass p toy.printed { " + words + " }\noutput o p.image");
-  return PipelineExecutor(device, techniques, scene, pipeline, options)
+  return f.executor(head + "pass p toy.printed { " + words + " }\noutput o p.image", options)
       .render(0.0)
       .outputs.at("o")
       .values()

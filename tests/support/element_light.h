@@ -7,6 +7,7 @@
 
 #include "../../techniques/implicit_visibility/links/direction_bins.h"
 #include "../../techniques/implicit_visibility/links/element_light.h"
+#include "../../techniques/implicit_visibility/links/element_links.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

@@ -8,8 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "../../techniques/implicit_visibility/links/element_links.h"
 #include "../../techniques/implicit_visibility/elements/surface_elements.h"
+#include "../../techniques/implicit_visibility/links/element_light.h"
+#include "../../techniques/implicit_visibility/links/element_links.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "../../techniques/virtual_area_lights/points/surface_points_port.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
@@ -12,6 +13,7 @@
 
 using namespace lumivox;
 using namespace lumivox::test;
+using namespace lumivox::virtual_area_lights;
 using Catch::Contains;
 
 namespace {

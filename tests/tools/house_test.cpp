@@ -304,6 +304,14 @@ TEST_CASE("the framework names no technique and no technique includes another") 
   CHECK_NONE(dependentTechniques(projectSources(), projectTechniques()));
 }
 
+TEST_CASE("the switch as_published is the framework's: no pass declares one of its own") {
+  for (const SourceFile& source : projectSources())
+    if (startsWith(source.path, "techniques/")) {
+      INFO(source.path);
+      CHECK(source.text.find("\"as_published\"") == std::string::npos);
+    }
+}
+
 TEST_CASE("no pass reads a kind of port without a look at the members that tell every reader how") {
   const std::vector<HeededKind> kinds = heededKinds(true);
   REQUIRE(kinds.size() >= 5);
