@@ -1,9 +1,9 @@
 # How a technique is built, inside the tree and outside of it (find_package(Lumivox)): the same functions in both. A project with techniques
 # has the folders techniques/NAME, shaders/NAME, scenes/pipelines and tests/techniques, as `lumivox new technique NAME` writes them.
 
-# lumivox_add_shaders(NAME [SOURCE folder] [PACKS folder]): compiles shaders/NAME/*.{vert,geom,frag,comp} (or those of another folder) offline
-# into lib/techniques/NAME.shaderpack (or another folder) and generates generated/NAME_shaders.h, the C++ side of their interfaces.
-# Target: shaders_NAME. Which files were included is taken from what shaderpack read.
+# lumivox_add_shaders(NAME [SOURCE folder] [PACKS folder]): compiles *.{vert,geom,frag,comp} of shaders/NAME (or of another folder) and of the
+# folders below offline into lib/techniques/NAME.shaderpack (or another folder) and generates generated/NAME_shaders.h, the C++ side of their
+# interfaces. Target: shaders_NAME. Which files were included is taken from what shaderpack read.
 function(lumivox_add_shaders name)
   cmake_parse_arguments(shaders "" "SOURCE;PACKS" "" ${ARGN})
   if(NOT shaders_SOURCE)
@@ -18,7 +18,7 @@ function(lumivox_add_shaders name)
   list(REMOVE_DUPLICATES roots)
   set(pack ${shaders_PACKS}/${name}.shaderpack)
   set(header ${PROJECT_BINARY_DIR}/generated/${name}_shaders.h)
-  file(GLOB entries CONFIGURE_DEPENDS ${shaders_SOURCE}/*.vert ${shaders_SOURCE}/*.geom ${shaders_SOURCE}/*.frag
+  file(GLOB_RECURSE entries CONFIGURE_DEPENDS ${shaders_SOURCE}/*.vert ${shaders_SOURCE}/*.geom ${shaders_SOURCE}/*.frag
        ${shaders_SOURCE}/*.comp)
   add_custom_command(
     OUTPUT ${pack} ${header}
@@ -31,9 +31,9 @@ function(lumivox_add_shaders name)
   add_custom_target(shaders_${name} DEPENDS ${pack} ${header})
 endfunction()
 
-# lumivox_add_technique(NAME [LIBRARIES libraries...]): the shared library of techniques/NAME/*.cpp and of its sub-folders, when shaders/NAME exists its shaders, and
-# beside both the paper card NAME.md, which explains where the technique breaks; installed where the program seeks techniques.
-# Target: technique_NAME.
+# lumivox_add_technique(NAME [LIBRARIES libraries...]): the shared library of *.cpp in techniques/NAME and the folders below, when shaders/NAME
+# exists its shaders, and beside both the paper card NAME.md, which explains where the technique breaks; installed where the program seeks
+# techniques. A technique in chapters has a card in each folder: NAME.md is all of them, one behind the other. Target: technique_NAME.
 function(lumivox_add_technique name)
   cmake_parse_arguments(technique "" "" "LIBRARIES" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/techniques/${name})
@@ -58,10 +58,11 @@ function(lumivox_add_technique name)
   target_link_libraries(technique_${name} PRIVATE Lumivox::lumivox ${technique_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY LUMIVOX_TECHNIQUES technique_${name})
   set(card ${built}/${name}.md)
+  file(GLOB chapters CONFIGURE_DEPENDS ${folder}/*/README.md)
   add_custom_command(
     OUTPUT ${card}
-    COMMAND ${CMAKE_COMMAND} -E copy ${folder}/README.md ${card}
-    DEPENDS ${folder}/README.md
+    COMMAND ${CMAKE_COMMAND} -E cat ${folder}/README.md ${chapters} > ${card}
+    DEPENDS ${folder}/README.md ${chapters}
     VERBATIM)
   add_custom_target(card_${name} DEPENDS ${card})
   add_dependencies(technique_${name} card_${name})

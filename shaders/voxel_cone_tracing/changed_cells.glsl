@@ -3,7 +3,7 @@
 // C++ side: ChangedCells in techniques/voxel_cone_tracing/changed_cells.h.
 #ifndef LUMIVOX_CHANGED_CELLS
 #define LUMIVOX_CHANGED_CELLS
-#include "octree_tags.glsl"
+#include "octree/octree_tags.glsl"
 
 layout(std140, binding = 5) uniform Changes {
   int cellDepth;   // of cells, in a tree over the grid whose root is at depth 0

@@ -40,7 +40,7 @@ layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 
 // The voxel of a fragment: its low corner in world space, and in w its width, m.
 #if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
-#include "clipmap_stack.glsl"
+#include "clipmap/clipmap_stack.glsl"
 
 vec4 voxelOfFragment(VoxelFragment fragment) {
   ivec3 voxel = unpackVoxel(fragment.voxel);

@@ -5,8 +5,8 @@
 #pragma lumivox require !CHANGED || PLACES != clipmap
 #include "taken_fragments.glsl"
 #if PLACES == PLACES_OCTREE
-#include "octree_levels.glsl"
-#include "octree_ranks.glsl"
+#include "octree/octree_levels.glsl"
+#include "octree/octree_ranks.glsl"
 
 uint sumsAt(ivec3 voxel) {
   // Where the tree was built as published there are no ranks.

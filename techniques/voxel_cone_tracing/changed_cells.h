@@ -7,7 +7,7 @@
 
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
-#include "radiance_octree.h"
+#include "octree/radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -17,7 +17,7 @@ shader::BindingSet bindingOf(const ChangedCells& cells, int stillShift = 0);
 
 /// Depth of the finest voxels in the smallest tree over a grid.
 int voxelDepthOver(const GridPlacement& grid);
-/// Words of tags before those of a depth (shaders/voxel_cone_tracing/octree_tags.glsl).
+/// Words of tags before those of a depth (shaders/voxel_cone_tracing/octree/octree_tags.glsl).
 std::uint64_t firstTagWord(int depth);
 
 /// The fragments of what stands still, and of what moves: lists with counts of their own. A shader counts the

@@ -1,16 +1,12 @@
-// Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using
-// voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering; injection is in
-// inject.cpp, final gathering in gather.cpp.
-#include "drawn.h"
-#include "levels.h"
-#include "lumivox/base/error.h"
+// The passes of voxel cone tracing, by chapters: the cones themselves (cones/), and the stores that they
+// read, dense grids (dense/), an octree (octree/) and a clipmap (clipmap/); views of any grid (views/).
 #include "lumivox/plugin/technique.h"
-#include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
 void addInjectAsPublished(TechniqueRegistry& registry);
+void addFilter(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
@@ -22,77 +18,6 @@ void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
 
-glm::ivec3 evenlyHalved(const glm::ivec3& size) {
-  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
-  int multiple = 1;
-  while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
-  return (size + (multiple - 1)) / multiple * multiple;
-}
-
-bool continuesLevels(PassContext& frame, const ChangedBricks& changed) {
-  if (changed.levels == nullptr) return false;
-  return changed.continues(frame.kept("levels of static geometry in unchanged light", changed.levels,
-                                      [] { return std::shared_ptr<const void>(std::make_shared<int>(0)); }));
-}
-
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn, bool onlyChanges) {
-  namespace filter = shaders::voxel_cone_tracing::filter;
-  namespace filter_drawn = shaders::voxel_cone_tracing::filter_drawn;
-  const gpu::TextureDescription& texture = grid.radiance->description();
-  const glm::ivec3 finest(texture.width, texture.height, texture.depth);
-  const OccupiedBricks& bricks = onlyChanges ? grid.changed.bricks : grid.occupied;
-  const filter::Constants constants{.rule = static_cast<int>(opacity)};
-  const auto sampling = opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
-  for (int level = 1; level < texture.levels; ++level) {
-    const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
-    // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
-                               finest % OccupiedBricks::kSide == glm::ivec3(0);
-    const shader::BindingSet bindings{
-        filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
-        filter::radianceGrid(grid.radiance, sampling), filter::radianceImage(grid.radiance, level),
-        filter::brickList(bricks.bricks), filter::brickCount(bricks.count)};
-    if (drawn) {
-      drawVoxels(frame,
-                 frame.program(filter_drawn::Variant{}, filter_drawn::Constants{.rule = constants.rule}),
-                 bindings, coarse);
-      continue;
-    }
-    const auto& program = frame.program(filter::Variant{followsBricks}, constants);
-    if (!followsBricks) {
-      frame.dispatch(program, bindings, coarse);
-      continue;
-    }
-    if (!onlyChanges) grid.radiance->clear(glm::vec4(0.0f), level);
-    frame.dispatchIndirect(program, bindings, *bricks.count, OccupiedBricks::argumentsBytes(level));
-  }
-  grid.filledLevels = texture.levels;
-  grid.opacity =
-      opacity == Opacity::facing ? RadianceGrid::Opacity::ofVoxel : RadianceGrid::Opacity::ofFinestVoxel;
-}
-
-namespace {
-
-class FilterPass : public Pass {
-  In<RadianceGrid> radiance{this, "radiance", "the finest level"};
-  Param<Opacity> opacity{
-      this, "opacity", Opacity::facing,
-      "how children make a parent: seen through along the axis that they face; their plain mean; or that mean as published, in one read by the texture's filter, which misses children where sizes are odd"};
-  Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
-  Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
-
-  void run(PassContext& frame) override {
-    RadianceGrid filtered = *radiance;
-    const glm::ivec3& size = filtered.grid.resolution;
-    if (filtered.radiance->description().levels < gpu::fullLevelCount(size.x, size.y, size.z))
-      throw Error(
-          "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
-    fillLevels(frame, filtered, opacity, drawn, continuesLevels(frame, filtered.changed));
-    mips = filtered;
-  }
-};
-
-}  // namespace
 }  // namespace lumivox::voxel_cone_tracing
 
 LUMIVOX_TECHNIQUE(registry) {
@@ -102,7 +27,7 @@ LUMIVOX_TECHNIQUE(registry) {
       "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
   addInjectAsPublished(registry);
-  registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
+  addFilter(registry);
   addFilterDirectional(registry);
   addLobes(registry);
   addClipmap(registry);

@@ -1,6 +1,5 @@
 // Runs in the results store: written, found, chosen, merged, whatever happens meanwhile.
 #include <signal.h>
-#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include <set>
 
 #include "lumivox/base/error.h"
+#include "results_sql.h"
 #include "stored_records.h"
 #include "support/support.h"
 
@@ -274,13 +274,6 @@ class Claimant {
   pid_t process_ = -1;
 };
 
-void execute(const std::filesystem::path& file, const char* sql) {
-  sqlite3* handle = nullptr;
-  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
-  REQUIRE(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr) == SQLITE_OK);
-  sqlite3_close(handle);
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -381,21 +374,11 @@ TEST_CASE("removing a run removes all that belongs to it") {
     store.add(runNumber(1));
     CHECK(store.remove({}) == 1);
   }
-  sqlite3* handle = nullptr;
-  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
   for (const char* table : {"runs", "parameters", "provenance", "timings", "passes", "resources", "errors",
                             "metrics", "health", "work"}) {
     INFO(table);
-    int rows = -1;
-    const auto read = [](void* result, int, char** values, char**) {
-      *static_cast<int*>(result) = std::atoi(values[0]);
-      return 0;
-    };
-    REQUIRE(sqlite3_exec(handle, ("SELECT count(*) FROM " + std::string(table)).c_str(), read, &rows,
-                         nullptr) == SQLITE_OK);
-    CHECK(rows == 0);
+    CHECK(selected(file, "SELECT count(*) FROM " + std::string(table)) == "0");
   }
-  sqlite3_close(handle);
 }
 
 TEST_CASE("merging takes over what is not there, once") {

@@ -70,6 +70,10 @@ TEST_CASE("a card's list below its heading explains cases, by patterns and for s
   CHECK(rowFor(both, "slicing", "thin_wall")->what == "all");
   CHECK(rows[1].what == "shifts: much");
   CHECK(whereItBreaks("## Where it breaks\n\nNowhere.\n").empty());
+  // The cards of chapters, one behind the other.
+  CHECK(whereItBreaks("# whole\n\n## Where it breaks\n\n- `a`: x. *Why:* y.\n# part\n\n- no case\n\n"
+                      "## Where it breaks\n\n- `b`: x. *Why:* y.\n")
+            .size() == 2);
   CHECK(whereItBreaks("").empty());
 }
 

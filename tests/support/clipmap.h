@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../../techniques/voxel_cone_tracing/radiance_clipmap.h"
+#include "../../techniques/voxel_cone_tracing/clipmap/radiance_clipmap.h"
 #include "support/cones.h"
 #include "support/voxel_fragments.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../techniques/voxel_cone_tracing/directional_grid.h"
+#include "../../techniques/voxel_cone_tracing/dense/directional_grid.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

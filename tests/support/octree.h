@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../../techniques/voxel_cone_tracing/radiance_octree.h"
+#include "../../techniques/voxel_cone_tracing/octree/radiance_octree.h"
 #include "support/cones.h"
 #include "support/voxel_fragments.h"
 

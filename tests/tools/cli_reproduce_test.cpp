@@ -566,10 +566,10 @@ TEST_CASE("what the cards and guides quote of published tables and figures is wh
 
 TEST_CASE("a card that speaks of a reproduced table has its figures from the kept results") {
   std::size_t quoted = 0;
-  for (const auto& entry : fs::directory_iterator(sourceDirectory() / "techniques")) {
-    if (!fs::exists(entry.path() / "README.md")) continue;
+  for (const auto& entry : fs::recursive_directory_iterator(sourceDirectory() / "techniques")) {
+    if (entry.path().filename() != "README.md") continue;
     // Where it names the command, the sentence goes on with the figures, within the next lines of its item.
-    std::istringstream card(readFile(entry.path() / "README.md"));
+    std::istringstream card(readFile(entry.path()));
     std::string item;
     const auto check = [&] {
       if (contains(item, "lumivox reproduce ")) {

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "laboratory/results_sql.h"
 #include "lumivox/base/file.h"
 #include "support/support.h"
 
@@ -157,6 +158,15 @@ TEST_CASE("results are listed, exported, merged and removed from the command lin
   const std::string other = (sweep.directory.path() / "other.sqlite").string();
   CHECK(runCommand("lumivox results merge " + sweep.store + " --store " + other).output.find("2 runs") !=
         std::string::npos);
+  const std::filesystem::path earlier = sweep.directory.path() / "earlier.sqlite";
+  writeEarlierStore(earlier, 8);
+  const CommandResult refused = runCommand("lumivox results list --store " + earlier.string());
+  CHECK(refused.exitCode == 2);
+  CHECK(refused.errors.find("lumivox results import " + earlier.string()) != std::string::npos);
+  const std::string imported = (sweep.directory.path() / "imported.sqlite").string();
+  CHECK(runCommand("lumivox results import " + earlier.string() + " --store " + imported)
+            .output.find("2 runs, 2 stress cells, 1 peak rates") != std::string::npos);
+  CHECK(runCommand("lumivox results list --store " + imported).output.find("2 runs") != std::string::npos);
   CHECK(runCommand("lumivox results remove --set area_samples=1 --dry-run --store " + other)
             .output.find("1 runs would be removed") != std::string::npos);
   CHECK(runCommand("lumivox results remove --set area_samples=1 --store " + other).output ==

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "laboratory/results_sql.h"
 #include "lumivox/base/file.h"
 #include "tools/cli_support.h"
 #include "tools/display.h"
@@ -45,6 +46,7 @@ const std::vector<Line>& lines() {
       {"results equal-time", "lumivox results equal-time --frame-time 16ms --store out/results.sqlite"},
       {"results equal-error", "lumivox results equal-error --error 0.1 --store out/results.sqlite"},
       {"results merge", "lumivox results merge out/results.sqlite --store out/all.sqlite"},
+      {"results import", "lumivox results import out/earlier.sqlite --store out/all.sqlite"},
       {"compare-runs", "lumivox compare-runs out/results.sqlite out/all.sqlite"},
       {"results remove", "lumivox results remove --run 1 --store out/all.sqlite"},
       {"tune",
@@ -148,6 +150,7 @@ TEST_CASE("every command that the README and help name is started as a user type
   for (const char* part : {"scenes", "docs/examples"})
     fs::copy(sourceDirectory() / part, folder / part, fs::copy_options::recursive);
   place.write("tree/quit.view", "view \"quit\" {\n  wait frame\n  shot \"out/window.png\"\n  quit on\n}\n");
+  writeEarlierStore(folder / "out/earlier.sqlite", 8);
   const bool window = display().there();
   for (const Line& line : lines()) {
     if (line.command == "view" && !window) continue;

@@ -22,10 +22,13 @@ struct Code {
   std::string path, folder, text;
 };
 
-/// Of a C++ source of a technique, an example or a template: its folder. Empty for others.
+/// Of a C++ source of a technique, an example or a template: the folder of the technique, whichever chapter
+/// the source lies in. Empty for others.
 std::string techniqueFolder(const std::string& path) {
-  static const std::regex pattern("(?:(?:examples|templates)/\\w+/)?techniques/\\w+/[^/]+\\.(?:cpp|h)");
-  return std::regex_match(path, pattern) ? path.substr(0, path.rfind('/')) : "";
+  static const std::regex pattern(
+      "((?:(?:examples|templates)/\\w+/)?techniques/\\w+)/(?:\\w+/)*[^/]+\\.(?:cpp|h)");
+  std::smatch match;
+  return std::regex_match(path, match, pattern) ? match[1].str() : "";
 }
 bool isToolkit(const std::string& path) {
   return startsWith(path, "framework/src/toolkit/") || startsWith(path, "framework/include/lumivox/toolkit/");

@@ -355,6 +355,76 @@ Violations brokenNames(const std::set<std::string>& files, const std::vector<std
   return found;
 }
 
+// ---- sizes
+// --------------------------------------------------------------------------------------------------------------------------
+
+Violations largeFolders(const Sources& sources, const std::map<std::string, FolderSize>& exceptions) {
+  std::map<std::string, FolderSize> sizes;
+  for (const SourceFile& source : sources) {
+    if (!startsWith(source.path, "techniques/") || !isCpp(source.path)) continue;
+    FolderSize& size = sizes[std::filesystem::path(source.path).parent_path().generic_string()];
+    ++size.files;
+    size.lines += static_cast<int>(std::count(source.text.begin(), source.text.end(), '\n'));
+  }
+  Violations found;
+  std::set<std::string> needed;
+  for (const auto& [folder, size] : sizes) {
+    if (size.files <= kLargestFolder.files && size.lines <= kLargestFolder.lines) continue;
+    needed.insert(folder);
+    FolderSize most = kLargestFolder;
+    if (const auto exception = exceptions.find(folder); exception != exceptions.end())
+      most = {std::max(most.files, exception->second.files), std::max(most.lines, exception->second.lines)};
+    if (size.files > most.files || size.lines > most.lines)
+      found.push_back(fmt::format("{}: {} C++ files of {} lines; expected at most {} of {}", folder,
+                                  size.files, size.lines, most.files, most.lines));
+  }
+  for (const auto& [folder, size] : exceptions)
+    if (!needed.contains(folder)) found.push_back(folder + ": needs no exception from the size of a folder");
+  return found;
+}
+
+Violations widelyIncluding(const Sources& sources, const std::map<std::string, int>& exceptions) {
+  std::map<std::string, std::vector<std::string>> included;  // by each shader
+  for (const SourceFile& source : sources)
+    if (startsWith(source.path, "shaders/")) included[source.path];
+  for (const SourceFile& source : sources) {
+    const auto own = included.find(source.path);
+    if (own == included.end()) continue;
+    for (const Include& include : includesOf(source.text))
+      // Beside the including file first, as shaderpack seeks them.
+      for (const std::filesystem::path& folder :
+           {std::filesystem::path(source.path).parent_path(), std::filesystem::path("shaders")}) {
+        const std::string path = (folder / include.path).lexically_normal().generic_string();
+        if (included.count(path) == 0) continue;
+        own->second.push_back(path);
+        break;
+      }
+  }
+  Violations found;
+  std::set<std::string> needed;
+  for (const auto& [path, direct] : included) {
+    if (endsWith(path, ".glsl")) continue;
+    std::set<std::string> all(direct.begin(), direct.end());
+    for (std::vector<std::string> open = direct; !open.empty();) {
+      const std::string next = open.back();
+      open.pop_back();
+      for (const std::string& further : included.at(next))
+        if (all.insert(further).second) open.push_back(further);
+    }
+    const int count = static_cast<int>(all.size());
+    if (count <= kMostIncluded) continue;
+    needed.insert(path);
+    const auto exception = exceptions.find(path);
+    const int most = exception == exceptions.end() ? kMostIncluded : exception->second;
+    if (count > most)
+      found.push_back(fmt::format("{}: includes {} files; expected at most {}", path, count, most));
+  }
+  for (const auto& [path, count] : exceptions)
+    if (!needed.contains(path))
+      found.push_back(path + ": needs no exception from the number of included files");
+  return found;
+}
+
 // ---- everything else
 // ----------------------------------------------------------------------------------------------------------------
 

@@ -50,6 +50,21 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 /// One name everywhere: `files` are all of the project, `pipelines` those that are committed.
 Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,
                        const Sources& pipelines);
+
+/// How much one sits down to read: C++ files of a folder of a technique and their lines, each folder by
+/// itself.
+struct FolderSize {
+  int files = 0, lines = 0;
+};
+constexpr FolderSize kLargestFolder{12, 1300};
+/// Files that a program's stage may include, those that included files include counted too.
+constexpr int kMostIncluded = 10;
+/// Folders that are larger. `exceptions`: by path, with the size that they may have at most; one that is not
+/// needed is a violation.
+Violations largeFolders(const Sources& sources, const std::map<std::string, FolderSize>& exceptions);
+/// The same for entry files of shaders.
+Violations widelyIncluding(const Sources& sources, const std::map<std::string, int>& exceptions);
+
 /// A kind of port, and members that its readers must heed (PortKind::conditions).
 struct HeededKind {
   std::string name;

@@ -140,6 +140,25 @@ TEST_CASE("files include each other without guards, from beside themselves or fr
     CHECK_THAT(dependencies, Catch::Contains(name));
 }
 
+TEST_CASE("programs in folders below are named by their files alone, and stand in one folder each") {
+  Project project;
+  const std::string main = "void main() { values[0] = value(); }\n";
+  project.write("b.comp", "#include \"part/value.glsl\"\n" + kCompute + main);
+  project.write("part/value.glsl", "float value() { return 1.0; }\n");
+  project.write("part/a.comp", "#include \"value.glsl\"\n" + kCompute + main);
+  project.write("other/c.comp", "#include \"../part/value.glsl\"\n" + kCompute + main);
+  std::vector<std::string> names;
+  for (const shader::PackedProgram& program : project.pack().programs) names.push_back(program.name);
+  CHECK(names == std::vector<std::string>{"a", "b", "c"});
+  CHECK(project.pack().codes.size() == 1);
+  CHECK_THAT(readFile(project.depfile()),
+             Catch::Contains("part/a.comp") && Catch::Contains("part/value.glsl"));
+
+  const fs::path twin = project.write("other/a.comp", kCompute + "void main() {}\n");
+  CHECK_THAT(project.errors(),
+             Catch::Contains("the program a has a file in another folder, " + twin.string()));
+}
+
 TEST_CASE("a missing include says where it was sought") {
   Project project;
   const auto file =

@@ -1,5 +1,5 @@
-// results: lists, exports, merges and removes what a results store holds, and sets its pipelines against each
-// other. compare-runs: what changed.
+// results: lists, exports, merges, imports and removes what a results store holds, and sets its pipelines
+// against each other. compare-runs: what changed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/results/csv.h"
+#include "lumivox/results/json.h"
 #include "lumivox/results/stress_cells.h"
 #include "measure_options.h"
 #include "results_text.h"
@@ -220,17 +221,24 @@ int exportResults(const ResultsCommand& command) {
   return kGood;
 }
 
+std::string countText(const MergeCount& count, const std::filesystem::path& file) {
+  return fmt::format("{} runs, {} stress cells, {} peak rates from {}\n", count.runs, count.cells,
+                     count.peakRates, file.string());
+}
+
 int mergeResults(const ResultsCommand& command) {
   // All are opened before the first is taken over.
   std::vector<ResultsStore> others;
   for (const std::filesystem::path& file : command.others)
     others.emplace_back(file, ResultsStore::Mode::read);
   ResultsStore store(command.file());
-  for (const ResultsStore& other : others) {
-    const MergeCount count = store.merge(other);
-    print(fmt::format("{} runs, {} stress cells, {} peak rates from {}\n", count.runs, count.cells,
-                      count.peakRates, other.file().string()));
-  }
+  for (const ResultsStore& other : others) print(countText(store.merge(other), other.file()));
+  return kGood;
+}
+
+int importResults(const ResultsCommand& command) {
+  ResultsStore store(command.file());
+  for (const std::filesystem::path& file : command.others) print(countText(store.import(file), file));
   return kGood;
 }
 
@@ -432,6 +440,11 @@ void addResultsCommands(Commands& commands) {
           mergeResults);
   command->addStoreTo(*merge);
   merge->add_option("STORE", command->others, "the other stores")->required();
+  auto* import =
+      add("import", "copies the runs, stress cells and peak rates of stores that an earlier version wrote",
+          importResults);
+  command->addStoreTo(*import);
+  import->add_option("STORE", command->others, "the stores of earlier versions")->required();
   auto* remove = add("remove", "removes runs", removeResults);
   command->addFilterTo(*remove);
   command->addStressTo(*remove);

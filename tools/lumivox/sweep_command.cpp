@@ -8,6 +8,7 @@
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/sweep.h"
 #include "lumivox/results/csv.h"
+#include "lumivox/results/json.h"
 #include "measure_options.h"
 #include "results_text.h"
 

@@ -74,23 +74,30 @@ std::map<std::string, std::map<gpu::Stage, std::filesystem::path>> entryFiles(
   if (!std::filesystem::is_directory(folder))
     throw Error(fmt::format("{}: no such folder of shaders", folder.string()));
   std::map<std::string, std::map<gpu::Stage, std::filesystem::path>> entries;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    const auto stage = kStages.find(file.path().extension().string());
+  // Folders below it sort the files for readers: a program is named by its stem alone.
+  std::set<std::filesystem::path> files;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) files.insert(file.path());
+  for (const std::filesystem::path& file : files) {
+    const auto stage = kStages.find(file.extension().string());
     if (stage == kStages.end()) continue;
-    const std::string stem = file.path().stem().string();
+    const std::string stem = file.stem().string();
     const bool nameable =
         !stem.empty() &&
         stem.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos &&
         stem[0] >= 'a';
     if (!nameable)
-      throw Error(fmt::format("{}: error: expected a snake_case name, which becomes a C++ namespace",
-                              file.path().string()));
-    entries[stem][stage->second] = file.path();
+      throw Error(
+          fmt::format("{}: error: expected a snake_case name, which becomes a C++ namespace", file.string()));
+    std::map<gpu::Stage, std::filesystem::path>& stages = entries[stem];
+    if (!stages.empty() && stages.begin()->second.parent_path() != file.parent_path())
+      throw Error(fmt::format("{}: error: the program {} has a file in another folder, {}", file.string(),
+                              stem, stages.begin()->second.string()));
+    stages[stage->second] = file;
   }
   if (entries.empty())
     throw Error(fmt::format("{}: no entry files (*.vert, *.geom, *.frag, *.comp)", folder.string()));
   for (const auto& [stem, stages] : entries) {
-    const std::string where = (folder / stem).string();
+    const std::string where = (stages.begin()->second.parent_path() / stem).string();
     if (stages.contains(gpu::Stage::compute) && stages.size() > 1) {
       throw Error(fmt::format(
           "{}.comp: error: a program is either a compute shader or raster stages of one name", where));

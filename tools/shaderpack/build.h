@@ -14,7 +14,7 @@ namespace lumivox::shaderpack {
 
 struct BuildOptions {
   std::string technique;
-  std::filesystem::path source;  ///< folder of the entry files
+  std::filesystem::path source;  ///< folder of the entry files, in it and in folders below
   std::vector<std::filesystem::path> includes;
   std::filesystem::path cache;
   unsigned threads = 0;  ///< 0: one per core

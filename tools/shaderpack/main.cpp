@@ -46,7 +46,8 @@ int main(int argc, char** argv) {
   lumivox::shaderpack::BuildOptions options;
   fs::path pack, header, depfile;
   app.add_option("--technique", options.technique, "Name of the technique")->required();
-  app.add_option("--source", options.source, "Folder of its entry files")->required();
+  app.add_option("--source", options.source, "Folder of its entry files, which may lie in folders below")
+      ->required();
   app.add_option("--include", options.includes,
                  "Folder searched for #include \"...\", besides that of the including file");
   app.add_option("--cache", options.cache, "Folder of compiled stages, kept from run to run")->required();

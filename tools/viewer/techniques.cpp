@@ -77,7 +77,7 @@ void LiveTechniques::use(const std::set<std::string>& techniques) {
     if (shaders.empty()) continue;
     std::error_code ignored;
     for (const fs::path& folder : {shaders, shaders.parent_path() / "common"})
-      for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored))
+      for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, ignored))
         if (file.is_regular_file(ignored)) files_.emplace(file.path(), std::pair(technique, true));
   }
   std::set<fs::path> names;

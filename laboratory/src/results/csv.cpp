@@ -4,61 +4,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+
+#include "results/fields.h"
 
 namespace lumivox {
 namespace {
 
 constexpr const char* kParameter = "parameter_";
 
-void addRow(CsvTable& table, const StoredRun& run, const ComponentError& error) {
-  const ReportPoint& point = run.point;
-  const RunIdentity& identity = run.identity;
+/// The columns of a record, after the list of its fields. What CSV has besides stands before or after them.
+struct Columns {
+  CsvTable& table;
+  const ReportPoint& point;
+
+  template <class M>
+  void operator()(const results::Field& field, const M& member) {
+    if constexpr (std::same_as<M, RunIdentity>) results::fields(member, *this);
+    if (!field.csv) return;
+    if constexpr (std::same_as<M, TimingStatistics>) {
+      table.add(std::string(field.name) + "_ms", member);
+    } else if constexpr (std::same_as<M, std::vector<std::string>>) {
+      table.add(std::string(field.name) + "_findings", std::uint64_t{member.size()});
+    } else if constexpr (std::same_as<M, StressOutcome>) {
+      table.add(field.name, name(member));
+    } else if constexpr (requires { table.add(field.name, member); }) {
+      if (field.name == std::string_view("framework_share")) addCosts();
+      table.add(field.name, member);
+      if (field.name == std::string_view("peak_bytes")) addVoxels();
+    }
+  }
+  template <class Flag>
+  void operator()(const results::Field& field, const results::Against<Flag>& against) {
+    table.add(field.name, against.bias ? "bias" : "misses");
+  }
+  void addCosts() {
+    const CostParts parts = costParts(point);
+    table.add("once_ms", parts.onceMs);
+    table.add("when_moving_ms", parts.movingMs);
+    table.add("every_frame_ms", parts.everyFrameMs);
+  }
+  void addVoxels() {
+    table.add("voxels", point.voxels ? point.voxels->output : std::string());
+    table.add("voxels_not_judged", point.voxels ? point.voxels->whyNot : std::string());
+    for (const auto& [name, value] : metricsOf(point.voxels)) table.add(name, value);
+  }
+};
+
+/// Without an error its columns are empty.
+void addRow(CsvTable& table, const StoredRun& run, const ComponentError* error) {
   table.beginRow();
   table.add("run", run.id == 0 ? std::string() : std::to_string(run.id));
-  table.add("created", run.created);
-  table.add("scene", point.scene);
-  table.add("pipeline", point.pipeline);
-  table.add("sweep", point.sweep);
-  table.add("default", run.isDefault);
-  table.add("camera", identity.camera);
-  table.add("time", identity.time);
-  table.add("width", identity.width);
-  table.add("height", identity.height);
-  table.add("seed", std::uint64_t{identity.seed});
-  table.add("seeds", error.output.empty() ? identity.seeds : error.seeds);
-  table.add("repeats", identity.repeats);
-  table.add("subpixels", identity.subpixels);
-  table.add("reference_samples", identity.referenceSamples);
-  table.add("device", identity.device);
-  table.add("driver", identity.driver);
-  table.add("shader_input", identity.shaderInput);
-  table.add("host", identity.host);
-  table.add("frame_ms", point.frameMs);
-  table.add("next_frame_ms", point.nextFrameMs);
-  const CostParts parts = costParts(point);
-  table.add("once_ms", parts.onceMs);
-  table.add("when_moving_ms", parts.movingMs);
-  table.add("every_frame_ms", parts.everyFrameMs);
-  table.add("framework_share", point.frameworkShare);
-  table.add("peak_bytes", std::uint64_t{point.peakBytes});
-  table.add("voxels", point.voxels ? point.voxels->output : std::string());
-  table.add("voxels_not_judged", point.voxels ? point.voxels->whyNot : std::string());
-  for (const auto& [name, value] : metricsOf(point.voxels)) table.add(name, value);
-  table.add("health_findings", std::uint64_t{point.healthFindings.size()});
-  table.add("failure", point.failure);
-  table.add("output", error.output);
-  table.add("component", error.component);
-  table.add("reference", error.reference);
-  table.add("against", error.output.empty() ? "" : error.bias ? "bias" : "misses");
-  table.add("deterministic", error.output.empty() ? std::string() : error.deterministic ? "1" : "0");
-  for (const NamedMetric& metric : metricsOf(error)) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    const bool is = !error.output.empty();
-    table.add(metric.name, is ? metric.measured : Measured{kNone, kNone});
-    table.add(std::string(metric.name) + "_of_nothing", is ? metric.ofNothing : kNone);
+  Columns columns{table, run.point};
+  results::fields(run, columns);
+  if (error != nullptr) {
+    results::fields(*error, columns);
+    for (const NamedMetric& metric : metricsOf(*error)) {
+      table.add(metric.name, metric.measured);
+      table.add(metric.name + "_of_nothing", metric.ofNothing);
+    }
   }
-  table.add("command", point.command);
-  for (const auto& [name, value] : point.parameters) table.addParameter(name, value.text());
+  table.add("command", run.point.command);
+  for (const auto& [name, value] : run.point.parameters) table.addParameter(name, value.text());
 }
 
 }  // namespace
@@ -131,12 +138,26 @@ std::string CsvTable::text() const {
 
 std::string runsCsv(const std::vector<StoredRun>& runs) {
   CsvTable table;
-  addRow(table, {}, {});  // the header of no runs
+  const ComponentError none;
+  addRow(table, {}, &none);  // the header of no runs
   table.clearRows();
   for (const StoredRun& run : runs) {
-    if (run.point.errors.empty()) addRow(table, run, {});
-    for (const ComponentError& error : run.point.errors) addRow(table, run, error);
+    if (run.point.errors.empty()) addRow(table, run, nullptr);
+    for (const ComponentError& error : run.point.errors) addRow(table, run, &error);
   }
+  return table.text();
+}
+
+std::string stressCellsCsv(const std::vector<StressCell>& cells) {
+  CsvTable table;
+  const ReportPoint none;
+  const auto add = [&](const StressCell& cell) {
+    table.beginRow();
+    results::fields(cell, Columns{table, none});
+  };
+  add({});
+  table.clearRows();
+  for (const StressCell& cell : cells) add(cell);
   return table.text();
 }
 

@@ -66,6 +66,12 @@ void Statement::run() {
   reset();
 }
 
+std::optional<int> Statement::columnNamed(const std::string& name) const {
+  for (int column = 0; column < sqlite3_column_count(statement_.get()); ++column)
+    if (name == sqlite3_column_name(statement_.get(), column)) return column;
+  return std::nullopt;
+}
+
 double Statement::number(int column) const {
   if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL)
     return std::numeric_limits<double>::quiet_NaN();

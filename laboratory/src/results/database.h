@@ -30,8 +30,6 @@ class Statement {
     (bindOne(++index, values), ...);
     return *this;
   }
-  /// Binds one value at a position from 1 on; after reset().
-  void bindAt(int index, const std::string& text) { bindOne(index, text); }
   void reset() { sqlite3_reset(statement_.get()); }
   bool step();  ///< true: a row is there
   void run();   ///< to the end
@@ -41,6 +39,8 @@ class Statement {
     run();
   }
 
+  /// None: the result has no column of this name.
+  std::optional<int> columnNamed(const std::string& name) const;
   std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
   /// NaN has no place in SQLite and is stored as NULL.
   double number(int column) const;

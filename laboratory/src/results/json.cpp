@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "results/field_json.h"
+
 namespace lumivox {
 namespace {
 
@@ -44,12 +46,11 @@ Json toJson(const Measured& measured) {
 }
 
 Json toJson(const TimingStatistics& statistics) {
-  return {{"median", numberJson(statistics.median)},
-          {"lower_quartile", numberJson(statistics.lowerQuartile)},
-          {"upper_quartile", numberJson(statistics.upperQuartile)},
-          {"smallest", numberJson(statistics.smallest)},
-          {"largest", numberJson(statistics.largest)},
-          {"repeats", statistics.repeats}};
+  Json json;
+  results::fields(statistics, [&](const results::Field& field, auto number) {
+    json[field.name] = results::jsonOf(number);
+  });
+  return json;
 }
 
 Json toJson(const ParameterValues& values) {
@@ -94,15 +95,19 @@ Json toJson(const ComponentError& record) {
 
 Json toJson(const std::optional<GatheredVoxels>& voxels) {
   if (!voxels) return nullptr;
-  Json json = {{"output", voxels->output}, {"kind", voxels->kind}};
-  if (!voxels->whyNot.empty()) json["why_not"] = voxels->whyNot;
-  json["resolution"] = {voxels->resolution.x, voxels->resolution.y, voxels->resolution.z};
+  Json json = results::jsonOf(*voxels);
   for (const auto& [name, value] : metricsOf(voxels)) json[name] = numberJson(value);
-  if (!voxels->whyNot.empty()) return json;
-  json["occupied"] = voxels->occupied;
-  json["reference"] = voxels->reference;
-  json["undecided"] = voxels->undecided;
   return json;
+}
+
+Json runsJson(const std::vector<StoredRun>& runs) {
+  Json list = Json::array();
+  for (const StoredRun& run : runs) {
+    Json json{{"run", run.id}, {"key", run.identity.key()}};
+    json.update(results::jsonOf(run));
+    list.push_back(std::move(json));
+  }
+  return list;
 }
 
 Json toJson(const ReportPoint& point, bool isDefault) {
@@ -193,16 +198,7 @@ Json toJson(const PruningRecord& record) {
 
 Json toJson(const std::vector<PeakRate>& peakRates) {
   Json list = Json::array();
-  for (const PeakRate& peakRate : peakRates)
-    list.push_back({{"name", peakRate.name},
-                    {"unit", peakRate.unit},
-                    {"median", peakRate.rate.median},
-                    {"lower_quartile", peakRate.rate.lowerQuartile},
-                    {"upper_quartile", peakRate.rate.upperQuartile},
-                    {"smallest", peakRate.rate.smallest},
-                    {"largest", peakRate.rate.largest},
-                    {"repeats", peakRate.rate.repeats},
-                    {"created", peakRate.created}});
+  for (const PeakRate& peakRate : peakRates) list.push_back(results::jsonOf(peakRate));
   return list;
 }
 
@@ -231,12 +227,9 @@ Json toJson(const VoxelizerRecord& record) {
   json["false_negative"] = record.error.falseNegative;
   json["recall"] = record.error.recall();
   json["precision"] = record.error.precision();
-  json["holes"] = {{"axis_crossings", record.holes.axisCrossings},
-                   {"axis_holes", record.holes.axisHoles},
-                   {"oblique_crossings", record.holes.obliqueCrossings},
-                   {"oblique_holes", record.holes.obliqueHoles},
-                   {"axis_share", record.holes.axisShare()},
-                   {"oblique_share", record.holes.obliqueShare()}};
+  json["holes"] = results::jsonOf(record.holes);
+  json["holes"]["axis_share"] = record.holes.axisShare();
+  json["holes"]["oblique_share"] = record.holes.obliqueShare();
   json["fragments"] = record.fragments;
   json["bytes"] = record.bytes;
   json["allocated_bytes"] = record.allocatedBytes;

@@ -67,12 +67,7 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
     known = true;
   });
   if (known) return true;
-  if (metric.name == "rmse_over_seeds") {
-    // Stores of schema 3 and before: mean and standard error over the seeds beside the RMSE of the first one,
-    // whose uncertainty is the reference's noise.
-    error.error.rmse = {metric.measured.value,
-                        std::hypot(error.error.rmse.uncertainty, metric.measured.uncertainty)};
-  } else if (metric.name == "rms_bias") {
+  if (metric.name == "rms_bias") {
     error.parts.bias = metric.measured;
   } else if (metric.name == "rms_noise") {
     error.parts.noise = metric.measured;

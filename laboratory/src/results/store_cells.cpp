@@ -2,15 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "lumivox/base/hash.h"
 #include "lumivox/results/store.h"
 #include "results/database.h"
+#include "results/field_json.h"
 #include "results/store_state.h"
 
 namespace lumivox {
 
+using results::Record;
 using results::Statement;
 using results::Transaction;
 
@@ -18,6 +19,22 @@ namespace results {
 
 bool namesFile(const std::string& wanted, const std::string& file) {
   return wanted == file || std::filesystem::path(file).stem() == wanted;
+}
+
+std::vector<Record> records(const std::vector<StressCell>& cells) {
+  std::vector<Record> records;
+  for (const StressCell& cell : cells) records.push_back({cell.key(), cell.created, recordText(cell)});
+  return records;
+}
+
+std::vector<Record> records(const std::vector<PeakRate>& peakRates) {
+  std::vector<Record> records;
+  for (const PeakRate& rate : peakRates) {
+    Hasher hasher;
+    hasher.add(rate.device).add(rate.driver).add(rate.shaderInput).add(rate.host).add(rate.name);
+    records.push_back({hasher.finish().text(), rate.created, recordText(rate)});
+  }
+  return records;
 }
 
 }  // namespace results
@@ -43,65 +60,45 @@ bool CellFilter::everything() const {
          since.empty() && !outcome && ids.empty();
 }
 
-void ResultsStore::add(const std::vector<StressCell>& cells) {
-  Transaction transaction(state_->database);
-  state_->addCells(cells);
-  transaction.commit();
+void ResultsStore::State::put(const char* table, const std::vector<Record>& records) {
+  Statement remove(database, fmt::format("DELETE FROM {} WHERE key = ?", table).c_str());
+  Statement insert(database, fmt::format("INSERT INTO {} (key, record) VALUES (?, ?)", table).c_str());
+  for (const Record& record : records) {
+    remove.run(record.key);
+    insert.run(record.key, record.json);
+  }
 }
 
-/// Inside a transaction.
-void ResultsStore::State::addCells(const std::vector<StressCell>& cells) {
-  Statement remove(database, "DELETE FROM stress_cells WHERE key = ?");
-  Statement insert(
-      database, "INSERT INTO stress_cells VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  Statement provenance(database, "INSERT INTO stress_provenance VALUES (?,?,?)");
-  for (const StressCell& cell : cells) {
-    remove.run(cell.key());
-    insert.run(cell.key(), cell.created, cell.version, cell.family, cell.name, cell.pipeline, cell.technique,
-               cell.size, lumivox::name(cell.outcome), cell.measure, cell.unit, cell.value.value,
-               cell.value.uncertainty, cell.limit, cell.detail, cell.explanation, cell.image, cell.command,
-               cell.seconds, cell.pipelineHash, cell.framework, cell.device, cell.driver, cell.shaderInput,
-               cell.host);
-    const std::int64_t id = database.lastRow();
-    for (const auto& [technique, hash] : cell.techniques) provenance.run(id, technique, hash);
-  }
+std::size_t ResultsStore::State::putNewer(const char* table, const std::vector<Record>& records) {
+  Statement mine(database, fmt::format("SELECT created FROM {} WHERE key = ?", table).c_str());
+  std::vector<Record> newer;
+  for (const Record& record : records)
+    if (!mine.bind(record.key).step() || mine.text(0) < record.created) newer.push_back(record);
+  mine.reset();
+  put(table, newer);
+  return newer.size();
+}
+
+std::vector<Record> ResultsStore::State::records(const char* table) const {
+  std::vector<Record> records;
+  Statement row(database, fmt::format("SELECT key, created, record FROM {} ORDER BY id", table).c_str());
+  while (row.step()) records.push_back({row.text(0), row.text(1), row.text(2)});
+  return records;
+}
+
+void ResultsStore::add(const std::vector<StressCell>& cells) {
+  Transaction transaction(state_->database);
+  state_->put("stress_cells", results::records(cells));
+  transaction.commit();
 }
 
 std::vector<StressCell> ResultsStore::stressCells(const CellFilter& filter) const {
   std::vector<StressCell> cells;
-  if (state_->schema < 2) return cells;
-  Statement row(state_->database, "SELECT * FROM stress_cells ORDER BY id");
-  Statement provenance(state_->database, "SELECT technique, hash FROM stress_provenance WHERE cell = ?");
+  Statement row(state_->database, "SELECT id, record FROM stress_cells ORDER BY id");
   while (row.step()) {
-    StressCell cell;
+    auto cell = results::recordFrom<StressCell>(row.text(1));
     cell.id = row.integer(0);
-    cell.created = row.text(2);
-    cell.version = row.text(3);
-    cell.family = row.text(4);
-    cell.name = row.text(5);
-    cell.pipeline = row.text(6);
-    cell.technique = row.text(7);
-    cell.size = row.text(8);
-    cell.outcome = stressOutcomeNamed(row.text(9)).value_or(StressOutcome::broken);
-    cell.measure = row.text(10);
-    cell.unit = row.text(11);
-    cell.value = {row.number(12), row.number(13)};
-    cell.limit = row.number(14);
-    cell.detail = row.text(15);
-    cell.explanation = row.text(16);
-    cell.image = row.text(17);
-    cell.command = row.text(18);
-    cell.seconds = row.number(19);
-    cell.pipelineHash = row.text(20);
-    cell.framework = row.text(21);
-    cell.device = row.text(22);
-    cell.driver = row.text(23);
-    cell.shaderInput = row.text(24);
-    cell.host = row.text(25);
-    if (!matches(filter, cell)) continue;
-    for (provenance.bind(cell.id); provenance.step();)
-      cell.techniques[provenance.text(0)] = provenance.text(1);
-    cells.push_back(std::move(cell));
+    if (matches(filter, cell)) cells.push_back(std::move(cell));
   }
   return cells;
 }
@@ -117,34 +114,15 @@ std::size_t ResultsStore::removeCells(const CellFilter& filter) {
 
 void ResultsStore::add(const std::vector<PeakRate>& peakRates) {
   Transaction transaction(state_->database);
-  state_->addPeakRates(peakRates);
+  state_->put("peak_rates", results::records(peakRates));
   transaction.commit();
-}
-
-/// Inside a transaction.
-void ResultsStore::State::addPeakRates(const std::vector<PeakRate>& peakRates) {
-  Statement insert(database, "INSERT OR REPLACE INTO peak_rates VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  for (const PeakRate& peakRate : peakRates)
-    insert.run(peakRate.device, peakRate.driver, peakRate.shaderInput, peakRate.host, peakRate.name,
-               peakRate.unit, peakRate.created, peakRate.version, peakRate.rate.median,
-               peakRate.rate.lowerQuartile, peakRate.rate.upperQuartile, peakRate.rate.smallest,
-               peakRate.rate.largest, peakRate.rate.repeats);
 }
 
 std::vector<PeakRate> ResultsStore::peakRates() const {
   std::vector<PeakRate> peakRates;
-  if (state_->schema < 2) return peakRates;
   Statement row(state_->database,
-                "SELECT name, unit, created, version, median, lower_quartile, upper_quartile, smallest, "
-                "largest, repeats, device, driver, shader_input, host FROM peak_rates "
-                "ORDER BY device, driver, shader_input, host, name");
-  while (row.step()) {
-    PeakRate peakRate{row.text(0),  row.text(1),  {},           row.text(2), row.text(3),
-                      row.text(10), row.text(11), row.text(12), row.text(13)};
-    peakRate.rate = {row.number(4), row.number(5), row.number(6),
-                     row.number(7), row.number(8), static_cast<int>(row.integer(9))};
-    peakRates.push_back(std::move(peakRate));
-  }
+                "SELECT record FROM peak_rates ORDER BY device, driver, shader_input, host, name");
+  while (row.step()) peakRates.push_back(results::recordFrom<PeakRate>(row.text(0)));
   return peakRates;
 }
 

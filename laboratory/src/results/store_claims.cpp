@@ -79,49 +79,52 @@ void ResultsStore::release(const std::vector<std::string>& keys) {
 }
 
 std::optional<RunClaim> ResultsStore::claimedByOther(const std::string& key) const {
-  if (state_->schema < 4) return std::nullopt;
   const std::optional<RunClaim> there = claimIn(state_->database, key);
   return there && !same(*there, ownClaim()) && stands(*there) ? there : std::nullopt;
+}
+
+void ResultsStore::State::add(const std::string& key, const results::Control& control) {
+  const TimingStatistics& time = control.time;
+  if (time.repeats > 0)
+    Statement(database, "INSERT OR IGNORE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?")
+        .run(control.created, control.what, time.median, time.lowerQuartile, time.upperQuartile, time.repeats,
+             key);
 }
 
 void ResultsStore::addControl(const std::string& key, const TimingStatistics& frameMs,
                               const TimingStatistics& nextFrameMs) {
   Transaction transaction(state_->database);
-  Statement insert(state_->database,
-                   "INSERT OR REPLACE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?");
   const std::string created = dateText();
-  const auto add = [&](const char* what, const TimingStatistics& time) {
-    if (time.repeats > 0)
-      insert.run(created, what, time.median, time.lowerQuartile, time.upperQuartile, time.repeats, key);
-  };
-  add("frame", frameMs);
-  add("next_frame", nextFrameMs);
+  state_->add(key, {created, "frame", frameMs});
+  state_->add(key, {created, "next_frame", nextFrameMs});
   transaction.commit();
 }
 
-/// Inside a transaction.
-void ResultsStore::State::addControls(const State& other) {
-  if (other.schema < 4) return;
-  Statement row(
-      other.database,
-      "SELECT c.created, c.what, c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, c.repeats, r.key "
-      "FROM controls c JOIN runs r ON r.id = c.run");
-  Statement insert(database,
-                   "INSERT OR IGNORE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?");
-  while (row.step())
-    insert.run(row.text(0), row.text(1), row.number(2), row.number(3), row.number(4), row.integer(5),
-               row.text(6));
+std::vector<std::pair<std::string, results::Control>> ResultsStore::State::controls() const {
+  std::vector<std::pair<std::string, results::Control>> controls;
+  Statement row(database,
+                "SELECT r.key, c.created, c.what, c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, "
+                "c.repeats FROM controls c JOIN runs r ON r.id = c.run");
+  while (row.step()) {
+    results::Control control{row.text(1), row.text(2), {}};
+    control.time.median = row.number(3);
+    control.time.lowerQuartile = row.number(4);
+    control.time.upperQuartile = row.number(5);
+    control.time.repeats = static_cast<int>(row.integer(6));
+    controls.emplace_back(row.text(0), std::move(control));
+  }
+  return controls;
 }
 
 std::vector<RepeatedControl> ResultsStore::controls(const RunIdentity& where) const {
   std::vector<RepeatedControl> controls;
-  if (state_->schema < 4) return controls;
   Statement row(
       state_->database,
-      "SELECT c.run, c.created, c.what, t.median_ms, t.lower_quartile_ms, t.upper_quartile_ms, t.repeats, "
-      "c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = "
-      "c.run JOIN timings t ON t.run = c.run AND t.what = c.what AND t.pass = '' WHERE r.device = ? AND "
-      "r.driver = ? AND r.shader_input = ? AND r.host = ? ORDER BY c.created DESC, c.run, c.what");
+      "SELECT c.run, c.created, c.what, json_extract(r.record, '$.' || c.what || '.median_ms'), "
+      "json_extract(r.record, '$.' || c.what || '.lower_quartile_ms'), json_extract(r.record, '$.' || c.what || "
+      "'.upper_quartile_ms'), json_extract(r.record, '$.' || c.what || '.repeats'), c.median_ms, "
+      "c.lower_quartile_ms, c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = c.run WHERE "
+      "r.device = ? AND r.driver = ? AND r.shader_input = ? AND r.host = ? ORDER BY c.created DESC, c.run, c.what");
   std::int64_t run = -1;
   for (row.bind(where.device, where.driver, where.shaderInput, where.host); row.step();) {
     if (controls.empty() || run != row.integer(0) || controls.back().created != row.text(1)) {

@@ -17,6 +17,19 @@ RunClaim ownClaim();
 /// clock tells.
 bool lives(const RunClaim& claim);
 
+/// The times of a run measured once more.
+struct Control {
+  std::string created, what;  ///< "frame" or "next_frame"
+  TimingStatistics time;
+};
+
+/// A row of a table of records. Of two with one key the newer one stays.
+struct Record {
+  std::string key, created, json;
+};
+std::vector<Record> records(const std::vector<StressCell>& cells);
+std::vector<Record> records(const std::vector<PeakRate>& peakRates);
+
 }  // namespace lumivox::results
 
 namespace lumivox {
@@ -24,30 +37,28 @@ namespace lumivox {
 struct ResultsStore::State {
   results::Database database;
   Mode mode;
-  std::int64_t schema = 0;  ///< of the file; an older one has fewer tables
 
   State(const std::filesystem::path& file, Mode openMode)
       : database(file, openMode == Mode::write), mode(openMode) {}
   void requireSchema();
-  std::int64_t insertRun(const StoredRun& run, bool complete);
-  void insertTimes(std::int64_t id, const ReportPoint& point);
-  void insertWork(std::int64_t id, const ReportPoint& point);
-  void insertErrors(std::int64_t id, const ReportPoint& point);
-  void insertVoxels(std::int64_t id, const ReportPoint& point);
-  void insertNames(std::int64_t id, const StoredRun& run);
+
+  struct RunRecord {
+    std::string key, json;
+    bool failed = false, complete = true;
+  };
+  // These are called inside a transaction.
+  bool add(const RunRecord& run, const std::vector<StoredImage>& images);
   bool add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete);
+  void add(const std::string& key,
+           const results::Control& control);  ///< of the run with this key, if it is here
+  void put(const char* table, const std::vector<results::Record>& records);
+  std::size_t putNewer(const char* table, const std::vector<results::Record>& records);
+
   std::optional<StoredRun> find(const std::string& key, bool complete) const;
   std::vector<StoredRun> runs(const RunFilter& filter, bool complete) const;
-  void addCells(const std::vector<StressCell>& cells);
-  void addPeakRates(const std::vector<PeakRate>& peakRates);
-  void addControls(const State& other);  ///< of runs that are here
-  StoredRun runAt(const results::Statement& row) const;
-  void readTimes(StoredRun& run) const;
-  void readWork(StoredRun& run) const;
-  void readErrors(StoredRun& run) const;
-  void readVoxels(StoredRun& run) const;
-  void readAll(StoredRun& run) const;  ///< all but what runAt() and readNames() give
-  void readNames(StoredRun& run) const;
+  std::vector<results::Record> records(const char* table) const;
+  /// With the keys of their runs.
+  std::vector<std::pair<std::string, results::Control>> controls() const;
 };
 
 }  // namespace lumivox

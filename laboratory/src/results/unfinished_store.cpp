@@ -40,7 +40,9 @@ bool UnfinishedStore::join() {
   // Files are removed under the same lock, so that what is there now stays.
   if (database().isMoved()) return false;
   const RunClaim own = ownClaim();
-  Statement(database(), "INSERT INTO reports VALUES (NULL, '', ?, ?, ?, ?, ?)")
+  Statement(
+      database(),
+      "INSERT INTO reports (points, command, machine, process, started, expires) VALUES ('', ?, ?, ?, ?, ?)")
       .run(command_, own.machine, own.process, own.started, own.expires);
   report_ = database().lastRow();
   transaction.commit();

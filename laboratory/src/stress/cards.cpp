@@ -120,6 +120,7 @@ std::vector<CardRow> whereItBreaks(const std::string& card) {
   for (std::string line; std::getline(lines, line);) {
     const bool begins = line.rfind("- ", 0) == 0, goesOn = line.rfind("  ", 0) == 0 && !item.empty();
     if (!goesOn) finish();
+    if (line.rfind("# ", 0) == 0) inside = false;  // the card of the next chapter
     if (line.rfind("## ", 0) == 0) inside = trimmed(line.substr(3)) == "Where it breaks";
     if (inside && (begins || goesOn)) item += (item.empty() ? "" : " ") + trimmedLine(line.substr(2));
   }

@@ -26,6 +26,8 @@ nlohmann::ordered_json toJson(const ComponentError& error);
 /// Null: there are none.
 nlohmann::ordered_json toJson(const std::optional<GatheredVoxels>& voxels);
 nlohmann::ordered_json toJson(const ReportPoint& point, bool isDefault);
+/// As the results store keeps them, each with its number and key in front.
+nlohmann::ordered_json runsJson(const std::vector<StoredRun>& runs);
 nlohmann::ordered_json toJson(const PruningRecord& record);
 nlohmann::ordered_json toJson(const std::vector<PeakRate>& peakRates);
 nlohmann::ordered_json toJson(const VoxelizerRecord& record);

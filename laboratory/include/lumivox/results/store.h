@@ -1,9 +1,10 @@
-// The results store: every measured point with everything that it depends on, in one SQLite file. Schema and
-// the meaning of each column: docs/results.md.
+// The results store: every measured point with everything that it depends on, in one SQLite file: its key and
+// the record as JSON. The meaning of each column: docs/results.md.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,9 +106,11 @@ class ResultsStore {
   /// The same for the runs with these keys alone.
   MergeCount merge(const ResultsStore& other, const std::vector<std::string>& keys);
 
+  /// The same from a store that an earlier version wrote, with schema 1 to 8.
+  MergeCount import(const std::filesystem::path& file);
+
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.
   void add(const std::vector<StressCell>& cells);
-  /// By id; empty for a store of schema 1 that is only read.
   std::vector<StressCell> stressCells(const CellFilter& filter = {}) const;
   std::size_t removeCells(const CellFilter& filter);  ///< how many were removed
   /// The newest peak rates of each device; those of the same name take the place of the older ones.
@@ -116,13 +119,15 @@ class ResultsStore {
                                   const std::string& shaderInput, const std::string& host) const;
   std::vector<PeakRate> peakRates() const;  ///< of all devices
 
+  /// Tables, views and their columns, as docs/results.md lists them.
+  static std::string describe();
   /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
   static std::filesystem::path defaultFile();
 
  private:
   friend class results::UnfinishedStore;
   struct State;
-  MergeCount mergeRuns(const ResultsStore& other, const std::vector<StoredRun>& theirs);
+  MergeCount merge(const ResultsStore& other, const std::function<bool(const std::string&)>& isWanted);
   std::unique_ptr<State> state_;
 };
 

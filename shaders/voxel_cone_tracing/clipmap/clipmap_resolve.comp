@@ -1,0 +1,38 @@
+#version 450
+// Integer sums to the voxels of a clipmap, as resolve.comp does in a dense grid.
+//
+// SAMPLED: opacity by the samples of a voxel's sides.
+#pragma lumivox axis SAMPLED 0 1
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+#include "common/voxel.glsl"
+#include "clipmap_write.glsl"
+#include "clipmap_stack.glsl"
+#include "../bricks.glsl"
+
+layout(std140, binding = 0) uniform Parameters {
+  ivec3 brickCount;
+  float unit;  // W/(sr m^2) that the value 1 of the volumes stands for
+};
+layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
+layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
+layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
+#include "../face_sums.glsl"
+
+void main() {
+  uint item = listIndex();
+  if (item / 64u >= listed) return;
+  ivec3 voxel = voxelOf(unpackVoxel(brickList[item / 64u]), item % 64u);
+  Brick brick = bricks[brickOf(voxel, brickCount)];
+  if (!isOccupied(brick, item % 64u)) return;
+  uint place = sumsOf(brick, item % 64u);
+  vec4 faces[6];
+#if SAMPLED
+  for (int face = 0; face < 6; ++face) faces[face] = faceOfSamples(place, face, unit);
+#else
+  for (int face = 0; face < 6; ++face) faces[face] = faceOf(place, face, false, unit);
+#endif
+  int level = levelInStack(voxel);
+  writeVoxel(ownPlace(level, voxelOfLevel(voxel, level)), faces, true);
+}

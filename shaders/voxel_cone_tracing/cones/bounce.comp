@@ -1,0 +1,81 @@
+#version 450
+// One more bounce: the light that cones gather for every fragment through the grid of the bounces before, reflected diffusely and added to
+// the direct light (Crassin et al. 2011 inject direct light alone). Counts fragments anew, as inject.comp does.
+//
+// DIRECTIONS: both sides gather. Otherwise a voxel shines the same to all sides, and the side to which more light comes counts.
+#pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require (STORE == directional || FACES == six) == (DIRECTIONS == 1)
+#pragma lumivox require STORE != clipmap
+#pragma lumivox require !CHANGED && PLACES != clipmap && (PLACES == octree) == (STORE == octree)
+layout(local_size_x = 64) in;
+#include "march.glsl"
+#include "common/fragments.glsl"
+#include "../bricks.glsl"
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 gridLow;        // m
+  float voxelSize;     // m
+  ivec3 brickCount;
+  int coneCount;
+  float mostRadiance;  // W/(sr m^2): what no voxel can send
+  int twoSided;        // 1: light on the back side counts as well
+};
+layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // W/(sr m^2): three of each fragment or of each side of one
+layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };
+layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#include "../sums.glsl"
+#if DIRECTIONS
+layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
+#else
+layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
+#endif
+
+// Mean of the arriving radiance, weighted by the cosine. Each fragment has its own cones, which depend on nothing but the fragment.
+vec3 arrivingFrom(vec3 posWorld, vec3 normal, vec2 place) {
+  vec3 apex = posWorld + normal * (offset * voxelSize), tangent = tangentTo(normal), bitangent = cross(normal, tangent), sum = vec3(0.0);
+  for (int i = 0; i < coneCount; ++i) {
+    float cosTheta, tanHalfAngle;
+    vec3 direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cosTheta, tanHalfAngle);
+    sum += traceCone(apex, direction, tanHalfAngle, cosTheta, uint(i));
+  }
+  return sum / float(coneCount);
+}
+
+float total(vec3 value) { return value.r + value.g + value.b; }
+
+void main() {
+  uint index;
+  if (!takenFragment(index)) return;
+  VoxelFragment fragment = fragments[index];
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
+  vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
+  vec2 place = unitInterval(hash4(uvec4(fragment.voxel, fragment.offset, fragment.normal, 0u)).xy);
+  vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));  // front, back
+  // One call for both: the march is inlined wherever it is called.
+  for (int side = 0; side <= min(twoSided, 1); ++side)
+    sides[side] = albedo * arrivingFrom(posWorld, side == 0 ? normal : -normal, place);
+#if DIRECTIONS
+  const uint kSides = 2u;
+#else
+  if (total(sides[0]) < total(sides[1])) sides[0] = sides[1];
+  const uint kSides = 1u;
+#endif
+  float brightest = 0.0;
+  for (uint side = 0u; side < kSides; ++side) {
+    uint first = 3u * (kSides * index + side);
+    for (int channel = 0; channel < 3; ++channel) {
+      float radiance = min(direct[first + uint(channel)] + sides[side][channel], mostRadiance);
+      radiances[first + uint(channel)] = radiance;
+      brightest = max(brightest, radiance);
+    }
+  }
+  uint sum = sumsAt(voxel);
+#if DIRECTIONS
+  atomicAdd(directions[sum].fragments, 1u);
+  atomicMax(directions[sum].brightest, floatBitsToUint(brightest));
+#else
+  atomicAdd(sums[sum].fragments, 1u);
+  atomicMax(sums[sum].brightest, floatBitsToUint(brightest));
+#endif
+}

@@ -1,0 +1,51 @@
+#version 450
+// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: light that each fragment reflects diffusely; and of each voxel how many
+// fragments it has and how bright the brightest of them is, which add.comp needs for their average.
+//
+// DIRECTIONS: both sides apart, that of the normal first.
+#pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require PLACES != clipmap || DIRECTIONS
+#pragma lumivox require !REFLECTED || (!CHANGED && PLACES != clipmap)
+
+layout(local_size_x = 64) in;
+#include "../fragment_light.glsl"
+#include "../sums.glsl"
+
+#if DIRECTIONS
+layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
+#else
+layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
+#endif
+
+float largest(vec3 value) { return max(value.r, max(value.g, value.b)); }
+
+void main() {
+  uint index;
+  if (!takenFragment(index)) return;
+  VoxelFragment fragment = fragments[index];
+  vec3 albedo = albedoOf(fragment);
+  vec3 front, back, emitted = emittedBy(fragment);
+  KnownLight known = knownLightOf(index, fragment, twoSided != 0);
+  arrivingAt(fragment, known, front, back);
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  uint place = sumsAt(voxel);
+  float most = mostRadianceIn(voxel);
+#if DIRECTIONS
+  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + emitted, albedo / kPi * (ambient + back));
+  sides[known.side] += known.radiance;
+  float brightest = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    vec3 radiance = min(sides[side], most);
+    brightest = max(brightest, largest(radiance));
+    for (int channel = 0; channel < 3; ++channel) radiances[6 * index + 3 * side + channel] = radiance[channel];
+  }
+  atomicAdd(directions[place].fragments, 1u);
+  atomicMax(directions[place].brightest, floatBitsToUint(brightest));
+#else
+  vec3 radiance = min(albedo / kPi * (ambient + front + back), most);  // ambient: thesis Fig. 66
+  radiance = min(radiance + known.radiance + emitted, most);
+  for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
+  atomicAdd(sums[place].fragments, 1u);
+  atomicMax(sums[place].brightest, floatBitsToUint(largest(radiance)));
+#endif
+}

@@ -1,0 +1,152 @@
+#version 450
+// Integer sums to the finest level of the grid: radiance pre-multiplied by opacity, and opacity.
+// An occupied voxel is opaque as far as its fragments cover (thesis 004 Listing 4.10: fully).
+//
+// With MEDIUM the voxels hold the participating media as well (thesis 004 Sec. 4.5: a regular grid has room for smoke in its empty voxels, so
+// that the cones that look for surfaces see it). A voxel of width w and extinction sigma_t has the opacity 1 - exp(-sigma_t w), and
+// shines with what it scatters of the arriving light, evenly to all sides: a voxel has one radiance for all directions.
+//
+// DIRECTIONS: the same for each of the six faces of a voxel.
+// CHANGED: the bricks that are listed hold what was in them before, and voxels that are empty by now are made so.
+#pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox axis LIGHTS 0 1
+#pragma lumivox axis MEDIUM none even varying
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require (!LIGHTS || MEDIUM != none) && (!CHANGED || MEDIUM == none)
+
+#include "common/voxel.glsl"
+#include "../bricks.glsl"
+#include "common/integer_mean.glsl"
+#if MEDIUM != MEDIUM_NONE
+#if LIGHTS
+#define SHADOW_VIEWS
+#endif
+#include "common/media.glsl"
+#endif
+
+#if MEDIUM == MEDIUM_NONE
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+#else
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#endif
+
+layout(std140, binding = 0) uniform Parameters {
+  ivec3 brickCount;
+  float unit;       // W/(sr m^2) that the value 1 of the grid stands for
+  ivec3 resolution;
+  int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
+  vec3 gridLow;     // m
+  float voxelSize;  // m
+  int lightCount;
+  int mediumSteps;     // most steps through a medium that varies, towards a light
+  float mostRadiance;  // W/(sr m^2): what no voxel of this size can send
+};
+layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#if DIRECTIONS
+layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
+#include "../face_images.glsl"
+
+#include "../face_sums.glsl"
+
+void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
+  vec4 faces[6];
+  for (int face = 0; face < 6; ++face) {
+    faces[face] = occupied ? faceOf(place, face, coverageSum != 0, unit) : vec4(0.0);
+    faces[face] += (1.0 - faces[face].a) * media;
+  }
+  storeFaces(voxel, faces);
+}
+#else
+layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
+
+vec4 surfacesIn(VoxelSums sum) {
+  vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
+  if (coverageSum != 0) {
+    // The sums hold means over the fragments; radiance keeps its share of the opacity.
+    float opacity = min(value.a * float(sum.fragments), 1.0);
+    value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
+  }
+  float scale = uintBitsToFloat(sum.brightest) / unit;
+  return vec4(value.rgb * scale, min(value.a, 1.0));
+}
+
+void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
+  vec4 value = occupied ? surfacesIn(sums[place]) : vec4(0.0);
+  imageStore(radianceImage, voxel, value.a < 1.0 ? value + (1.0 - value.a) * media : value);
+}
+#endif
+
+#if MEDIUM == MEDIUM_NONE
+layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
+layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
+
+void main() {
+  uint item = listIndex();
+  if (item / 64u >= listed) return;
+  ivec3 voxel = voxelOf(unpackVoxel(brickList[item / 64u]), item % 64u);
+  Brick brick = bricks[brickOf(voxel, brickCount)];
+  bool occupied = isOccupied(brick, item % 64u);
+  if (occupied || CHANGED != 0) store(voxel, occupied, sumsOf(brick, item % 64u), vec4(0.0));
+}
+#else
+// The light that reaches a point from all sides, W/m^2.
+vec3 fluence(vec3 posWorld) {
+  vec3 sum = vec3(0.0);
+#if LIGHTS
+  for (int i = 0; i < lightCount; ++i) {
+    vec3 toLight;
+    vec3 arriving = arrivingIrradiance(lights[i], posWorld, toLight);
+    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= visibility(lights[i], posWorld, toLight, toLight);
+    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(lights[i], posWorld, mediumSteps);
+    sum += arriving;
+  }
+#endif
+  return sum;
+}
+
+// Mean density of a medium in a voxel.
+float meanDensity(int medium, vec3 low) {
+  vec3 overlap = min(media[medium].highDensity.xyz, low + voxelSize) - max(media[medium].lowAnisotropy.xyz, low);
+  if (any(lessThanEqual(overlap, vec3(0.0)))) return 0.0;
+#if MEDIUM == MEDIUM_VARYING
+  if (!isEven(medium)) {
+    // About as many samples along an axis as it has voxels of the medium.
+    const float kMostSamples = 4.0;
+    int samples = int(clamp(ceil(voxelSize / media[medium].gridLowVoxel.w), 1.0, kMostSamples));
+    float sum = 0.0;
+    for (int i = 0; i < samples * samples * samples; ++i) {
+      vec3 share = (vec3(i % samples, i / samples % samples, i / (samples * samples)) + 0.5) / float(samples);
+      sum += densityAt(medium, low + voxelSize * share);
+    }
+    return sum / float(samples * samples * samples);
+  }
+#endif
+  return overlap.x * overlap.y * overlap.z / (voxelSize * voxelSize * voxelSize);
+}
+
+vec4 mediaIn(ivec3 voxel) {
+  vec3 low = gridLow + vec3(voxel) * voxelSize;
+  vec3 depth = vec3(0.0), scattering = vec3(0.0);
+  for (int i = 0; i < mediumCount; ++i) {
+    float extent = meanDensity(i, low) * voxelSize;
+    depth += media[i].extinction.rgb * extent;
+    scattering += media[i].scattering.rgb * extent;
+  }
+  // There is one opacity for all channels; what each of them scatters is its own.
+  float opacity = 1.0 - exp(-(depth.r + depth.g + depth.b) / 3.0);
+  if (opacity <= 0.0) return vec4(0.0);
+  vec3 albedo = mix(scattering / max(depth, vec3(1e-30)), vec3(0.0), equal(depth, vec3(0.0)));
+  vec3 radiance = min(albedo * fluence(low + 0.5 * voxelSize) / (4.0 * kPi), mostRadiance);
+  return vec4(radiance * (1.0 - exp(-depth)) / unit, opacity);
+}
+
+void main() {
+  ivec3 voxel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(voxel, resolution))) return;
+  Brick brick = bricks[brickOf(voxel, brickCount)];
+  uint bit = bitOf(voxel);
+  store(voxel, isOccupied(brick, bit), sumsOf(brick, bit), mediaIn(voxel));  // media fill what surfaces leave
+}
+#endif

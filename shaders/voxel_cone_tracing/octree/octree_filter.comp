@@ -1,0 +1,88 @@
+#version 450
+// Pre-filtering of one level of an octree from the next finer one as filter.comp does it: the eight children of a coarse voxel are the voxels
+// that one child's brick owns. Each brick gets the eight voxels that are its own; the others are copied (octree_transfer.comp).
+//
+// Deviates from Crassin et al. 2011, Sec. 5 (octree_filter_part.comp): a wall one voxel thick that lies between two coarse voxels makes both
+// opaque there, and grows to three of them in trilinear reading.
+//
+// LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
+// CHANGED: what has not changed since static geometry was lit is copied from there.
+// DIRECTIONS: voxels with six faces, as filter_directional.comp does it.
+#pragma lumivox axis LIT 0 1
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require !LIT || (!CHANGED && !DIRECTIONS)
+layout(local_size_x = 64) in;
+#include "../children.glsl"
+#include "octree_levels.glsl"
+#include "octree_ranks.glsl"
+#if CHANGED
+#include "../changed_cells.glsl"
+#include "octree_still.glsl"
+#endif
+
+const int kFacing = 0, kAverage = 1;
+layout(constant_id = 0) const int rule = kFacing;
+
+layout(std140, binding = 0) uniform Coarse { int depth; };
+#if LIT
+layout(std430, binding = 4) readonly buffer Lit { uint lit[]; };  // by brick
+#endif
+layout(binding = 0) uniform sampler3D pool;
+layout(binding = 0) uniform writeonly image3D poolImage;  // the same
+
+// The brick of a child of a brick's node.
+uint childBrick(OctreeBrick brick, uint child) {
+  if (octreeRanked != 0) return rankedBrick(mortonOf(unpackVoxel(brick.place)) << 3 | child, depth + 1);
+  uint tile = octreeNodes[brick.node].children;
+  return tile == kNone ? kNone : octreeNodes[tile + child].brick;
+}
+
+#if DIRECTIONS
+uint finerBrick;
+vec4 higherFace(int axis, ivec3 child) { return texelFetch(pool, texelOf(brickOfFace(finerBrick, 2u * uint(axis))) + child, 0); }
+vec4 lowerFace(int axis, ivec3 child) { return texelFetch(pool, texelOf(brickOfFace(finerBrick, 2u * uint(axis) + 1u)) + child, 0); }
+#include "../columns.glsl"
+const uint kFaces = kBrickFaces;
+
+// The faces of the voxel that the voxels of a brick make; kNone: nothing is there.
+void filtered(uint finer, out vec4 faces[kFaces]) {
+  for (uint face = 0u; face < kFaces; ++face) faces[face] = vec4(0.0);
+  if (finer == kNone) return;
+  finerBrick = finer;
+  for (int axis = 0; axis < 3; ++axis) lookThrough(ivec3(0), axis, ivec3(0), ivec3(1), vec3(2.0), faces[2 * axis], faces[2 * axis + 1]);
+}
+#else
+const uint kFaces = 1u;
+
+void filtered(uint finer, out vec4 faces[kFaces]) {
+  faces[0] = vec4(0.0);
+  if (finer == kNone) return;
+  vec4 child[8];
+  for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
+  if (rule == kFacing) faces[0] = seenThrough(child);
+  for (int i = 0; i < 8 && rule == kAverage; ++i) faces[0] += child[i] / 8.0;
+}
+#endif
+
+void main() {
+  uint brick, lane;
+  if (!itemOf(depth, voxelsOfBrick(), brick, lane)) return;
+#if LIT
+  if (lit[brick] == 0u) return;
+#endif
+  ivec3 voxel = voxelOfLane(lane);
+#if CHANGED
+  uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place));
+  if (!isChanged(morton, depth)) {
+    for (uint face = 0u; face < kFaces; ++face)
+      imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, stillVoxel(morton, depth, voxel, face));
+    return;
+  }
+#endif
+  uint finer = kNone;  // of voxels that are copied, unless there is nothing to copy
+  if (all(lessThan(voxel, ivec3(2)))) finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));
+  vec4 faces[kFaces];
+  filtered(finer, faces);
+  for (uint face = 0u; face < kFaces; ++face) imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, faces[face]);
+}

@@ -1,0 +1,44 @@
+// Photons of a reflective shadow map in an octree: Crassin et al. 2011, Sec. 6; thesis 004, Sec. 3.1.3 and 4.2.2.
+// C++ side: techniques/voxel_cone_tracing/octree/octree_splat.cpp.
+#ifndef LUMIVOX_OCTREE_PHOTONS
+#define LUMIVOX_OCTREE_PHOTONS
+#include "octree_levels.glsl"
+#include "octree_ranks.glsl"
+
+// The photons of one voxel.
+struct PhotonSums {
+  uint photons;
+  uint brightest, largestArea;  // bits of floats: for numbers from 0 on their order is that of the numbers
+  uint red, green, blue, weight;  // shares of averages, in units of kFixedPoint
+};
+
+// A node by its way from the root: a 1, and three bits for each depth. 0: none.
+uint codeOf(ivec3 place, int depth) { return 1u << 3 * depth | mortonOf(place); }
+int depthOf(uint code) { return findMSB(code) / 3; }
+uint ancestorOf(uint code, int depth) { return code >> 3 * (depthOf(code) - depth); }
+
+// The deepest node that both lie in, which may be one of them.
+uint commonAncestor(uint a, uint b) {
+  if (a == 0u || b == 0u) return a | b;
+  int depth = min(depthOf(a), depthOf(b));
+  a = ancestorOf(a, depth);
+  uint differing = a ^ ancestorOf(b, depth);
+  return differing == 0u ? a : a >> 3 * (findMSB(differing) / 3 + 1);
+}
+
+// kNone where there is none, or where the tree had too little room and is empty.
+uint brickOfCode(uint code) {
+  if (octreeLevels[octreeDepth].bricks == 0u) return kNone;
+  int depth = depthOf(code);
+  if (octreeRanked != 0) return rankedBrick(code - (1u << 3 * depth), depth);
+  // From the root, three bits a depth (thesis 004, Listing 4.17).
+  uint node = 0u;
+  for (int below = depth - 1; below >= 0; --below) {
+    uint tile = octreeNodes[node].children;
+    if (tile >= kTagged) return kNone;
+    node = tile + (code >> 3 * below & 7u);
+  }
+  return octreeNodes[node].brick;
+}
+
+#endif

@@ -1,0 +1,588 @@
+// Levels of voxels around the camera, of which only what the camera uncovers is filled anew: thesis Gomes
+// 2015, Sec. 3.5 (VXGI); Tanner et al. 1998.
+#include "clipmap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "../changed_cells.h"
+#include "../direct_light.h"
+#include "../voxel_sums.h"
+#include "clipmap_items.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/toolkit/bindings.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+using namespace shaders::voxel_cone_tracing;
+
+namespace {
+
+bool sameBounds(const Bounds& a, const Bounds& b) {
+  return a.low == b.low && a.high == b.high && a.empty == b.empty;
+}
+
+/// A range of voxels of one level.
+struct LevelRange {
+  int level = 0;
+  VoxelRange voxels;
+  bool onlyChanges = false;  ///< only those in changed cells
+};
+
+/// The levels side by side as one grid (clipmap_stack.glsl).
+struct ClipmapStack {
+  int side = 0, row = 0, rows = 0;
+
+  ClipmapStack(int resolution, int levels) {
+    constexpr int kBrick = OccupiedBricks::kSide, kMostAlong = 1024;  // 10 bits: VoxelFragment::voxel
+    side = (resolution + kBrick - 1) / kBrick * kBrick;
+    row = std::min(kMostAlong / side, levels);
+    rows = (levels + row - 1) / row;
+    if (side * rows > kMostAlong)
+      throw Error(fmt::format(
+          "{} levels of {} voxels along a side do not fit into one list of fragments; expected at most {} levels",
+          levels, resolution, row * row));
+  }
+  glm::ivec3 size() const { return {side, side * rows, side * row}; }
+};
+
+/// What the voxels were lit by: resources that are held, so that no others can take their place unseen.
+struct LitBy {
+  LightPlacement lights;
+  std::vector<std::shared_ptr<const void>> media;
+  std::vector<float> numbers;
+  bool operator==(const LitBy&) const = default;
+};
+
+/// What is carried from frame to frame: the voxels, and of what they are.
+struct ClipmapState {
+  RadianceClipmap clipmap;
+  ClipmapPlacement placement;
+  LitBy litBy;
+  std::vector<std::shared_ptr<const void>> shadow;
+  std::optional<std::vector<Bounds>> moving;  ///< nothing: it cannot be told what they change
+  bool filled = false;
+};
+
+/// What the levels hold as long as it stays the same.
+struct ClipmapKey {
+  ClipmapPlacement placement;
+  bool operator==(const ClipmapKey& other) const { return placement.sameVoxels(other.placement); }
+};
+
+class ClipmapPass : public Pass {
+  enum class Coverage { touched, samples };
+  enum class Precision { float_, half };
+
+  DirectLight light{this};
+  Param<int> resolution{this, "resolution", 64, within(8, 512), "voxels along each side of a level"};
+  Param<int> levels{this, "levels", 3, within(1, 10),
+                    "around the camera, each with voxels of twice the size"};
+  Param<float> extent{
+      this, "extent",
+      0.0f, within(0.0f, 1e9f),
+      "m",  "side of the finest level; 0: so that the coarsest level contains the whole scene"};
+  Param<Coverage> coverage{
+      this, "coverage", Coverage::touched,
+      "what triangles cover: each voxel that they touch, as in the other stores; or, as published, opacity by eight samples of each side of a voxel and emittance by more where a triangle is small"};
+  Param<float> thickness{
+      this, "thickness", 0.5f, within(0.0f, 1.0f),
+      "with 'samples', how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+  Param<int> supersampling{this, "supersampling", 4, within(1, 16),
+                           "with 'samples', most pixels along a voxel for triangles that few samples meet; "
+                           "the largest power of two that is no more; 1: none"};
+  Param<Precision> precision{this, "precision", Precision::float_, "of the voxels: 16 or 8 bytes a face"};
+  Out<RadianceClipmap> radiance{this, "radiance",
+                                "radiance that the faces of voxels reflect, and opacity; levels as voxelized",
+                                Levels::finest};
+
+  Changes changes_;
+  /// Fragments that lists are made for: a guess, or what earlier frames needed; of all levels, and of parts.
+  std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
+  /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
+  static constexpr std::uint32_t kRowCapacity = 1u << 16;
+  /// Triangles that are looked at before what is found of them is voxelized: bounds the list of it.
+  static constexpr std::uint32_t kTrianglesAtOnce = 1u << 16;
+  static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
+  static constexpr int kGroup = 64;  ///< invocations of passes over the list
+
+ public:
+  Reads readsFrom() const override {
+    return Reads::geometry | Reads::lights | Reads::materials | Reads::environment | Reads::partOfCamera;
+  }
+  std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
+    std::vector<float> result;
+    for (const glm::ivec3& first : placeClipmap(snapshot, resolution, levels, extent).first)
+      result.insert(result.end(),
+                    {static_cast<float>(first.x), static_cast<float>(first.y), static_cast<float>(first.z)});
+    return result;
+  }
+
+  void run(PassContext& frame) override {
+    const ClipmapPlacement placement = placeClipmap(frame.snapshot(), resolution, levels, extent);
+    const std::shared_ptr<ClipmapState> state =
+        frame.kept("voxels of all levels", ClipmapKey{placement}, [&] { return stateFor(frame, placement); });
+    update(frame, *state, placement);
+    radiance = state->clipmap;
+  }
+
+ private:
+  bool isHalf() const { return precision == Precision::half; }
+  bool isSampled() const { return coverage == Coverage::samples; }
+
+  // ---- room ----------------------------------------------------------------------------------------------
+
+  gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
+
+  /// Whether the device has room for the volumes of a layout beside all that there is. What is asked for is
+  /// given back at once, and not to the pool, where it would wait.
+  bool fits(PassContext& frame, const ClipmapLayout& layout) const {
+    const gpu::TextureDescription volume{.kind = gpu::TextureKind::d3,
+                                         .format = format(),
+                                         .width = layout.volume.x,
+                                         .height = layout.volume.y,
+                                         .depth = layout.volume.z};
+    try {
+      std::vector<std::unique_ptr<gpu::Texture>> volumes;
+      for (int face = 0; face < 6; ++face)
+        volumes.push_back(std::make_unique<gpu::Texture>(frame.device(), volume, "clipmap of one side"));
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
+  std::shared_ptr<ClipmapState> stateFor(PassContext& frame, const ClipmapPlacement& placement) const {
+    const ClipmapStack stack(resolution, levels);  // Error for more than a list can number
+    const ClipmapLayout layout = layoutOf(placement);
+    int largest = resolution;
+    if (!fits(frame, layout)) {
+      do {
+        largest /= 2;
+      } while (largest > 1 &&
+               !fits(frame, layoutOf(placeClipmap(frame.snapshot(), largest, levels, extent))));
+    }
+    auto state = std::make_shared<ClipmapState>();
+    try {
+      // What does not fit beside what waits in the pool may be the very thing that waits.
+      for (gpu::TextureRef& face : state->clipmap.faces)
+        face = frame.volume(layout.volume, format(), "clipmap of one side");
+      state->clipmap.occupied =
+          frame.buffer(layout.words * sizeof(std::uint32_t), "occupied voxels of a clipmap");
+    } catch (const Error& error) {
+      throw Error(fmt::format(
+          "room for {} levels of {} voxels along a side takes {}; of sizes halved from it the largest that fits is {} ({})",
+          static_cast<int>(levels), static_cast<int>(resolution), formatBytes(layout.bytes(format())),
+          largest, error.what()));
+    }
+    return state;
+  }
+
+  // ---- what has changed ----------------------------------------------------------------------------------
+
+  LitBy litBy(PassContext& frame) const {
+    // Nearer lights may send more than a level takes.
+    LitBy result{Changes::placementOf(frame, light.shadow, light.brightest(frame, 1.0f)), {}, {}};
+    if (light.media.present() && light.shadow.present())
+      for (const ScatteringGrid::Medium& medium : light.media->media) {
+        result.media.push_back(medium.density);
+        for (const glm::vec3& corner : {medium.bounds.low, medium.bounds.high, medium.grid.low})
+          result.numbers.insert(result.numbers.end(), {corner.x, corner.y, corner.z});
+      }
+    return result;
+  }
+  std::vector<std::shared_ptr<const void>> shadowMap() const {
+    if (!light.shadow.present()) return {};
+    return {light.shadow->depth, light.shadow->lights, light.shadow->views};
+  }
+
+  /// What has to be filled anew: what the levels reach anew, and of the rest what is in changed cells.
+  static std::vector<LevelRange> rangesOf(const ClipmapPlacement& before, const ClipmapPlacement& placement,
+                                          bool all, bool moves) {
+    std::vector<LevelRange> result;
+    for (int level = 0; level < placement.levels(); ++level) {
+      const VoxelRange range = placement.rangeOf(level);
+      const VoxelRange had = all ? VoxelRange{} : before.rangeOf(level).within(range);
+      for (const VoxelRange& slab : range.without(had)) result.push_back({level, slab});
+      if (moves && !had.empty()) result.push_back({level, had, true});
+    }
+    return result;
+  }
+
+  /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
+  /// has left or come to, and those that lie behind it in the shadow map. Empties them.
+  gpu::BufferRef emptyChangedCells(PassContext& frame, const RadianceClipmap& clipmap,
+                                   const ClipmapPlacement& placement,
+                                   const std::vector<Bounds>& moving) const {
+    const std::uint64_t cells = cellsOfLevel(placement.resolution),
+                        levelCount = static_cast<std::uint64_t>(placement.levels());
+    const gpu::BufferRef result =
+        frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
+    const ItemLists full(frame, 1, cells * levelCount);
+    const BoxesInViews boxes(frame, light.shadow, moving);
+    const clipmap_changed::Moved moved{
+        .boxCount = boxes.count, .lightCount = boxes.lightCount, .texel = boxes.texel};
+    frame.dispatchList(frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
+                       {clipmapBinding(clipmap), clipmap_changed::clipmapCells(result), boxes.bindings(),
+                        full.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
+                        clipmap_changed::clipmapOccupied(clipmap.occupied)},
+                       cells * levelCount);
+    frame.dispatchIndirect(frame.program(clipmap_clear::Variant{.changed = 1}),
+                           {writing(clipmap), full.bindings()}, *full.heads, ItemLists::argumentsBytes(0));
+    return result;
+  }
+
+  void update(PassContext& frame, ClipmapState& state, const ClipmapPlacement& placement) {
+    LitBy lit = litBy(frame);
+    auto shadow = shadowMap();
+    std::optional<std::vector<Bounds>> moving = changes_.moving(frame);
+    const bool known = state.filled && moving && state.moving && moving->size() == state.moving->size();
+    const bool moves = known && !std::ranges::equal(*moving, *state.moving, sameBounds);
+    // Another shadow map is that of what moves, or nothing is known of it.
+    const bool all = !known || lit != state.litBy || (shadow != state.shadow && !moves);
+    const std::vector<LevelRange> ranges = rangesOf(state.placement, placement, all, moves && !all);
+    std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
+    place(frame, state.clipmap, placement);
+    tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
+    state.clipmap.change.cells = moves && !all ? emptyChangedCells(frame, state.clipmap, placement,
+                                                                   Changes::atEither(*moving, *state.moving))
+                                               : nullptr;
+    if (all) {
+      for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
+      state.clipmap.occupied->clear();
+    } else {
+      for (const LevelRange& range : ranges)
+        if (!range.onlyChanges)
+          frame.dispatch(frame.program(clipmap_clear::Variant{}),
+                         {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
+                          writing(state.clipmap)},
+                         range.voxels.size());
+    }
+    if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
+    state.placement = placement;
+    state.litBy = std::move(lit);
+    state.shadow = std::move(shadow);
+    state.moving = std::move(moving);
+    state.filled = true;
+  }
+
+  static void tellChange(RadianceClipmap::Change& change, std::vector<RadianceClipmap::Level> before,
+                         int levels, bool all, const std::vector<LevelRange>& ranges) {
+    ++change.number;
+    change.all = all;
+    change.before = std::move(before);
+    change.voxelized.assign(static_cast<std::size_t>(levels), {});
+    for (const LevelRange& range : ranges) {
+      VoxelRange& voxels = change.voxelized[static_cast<std::size_t>(range.level)];
+      voxels = voxels.around(range.voxels);
+    }
+  }
+
+  /// What the port says of the levels.
+  void place(PassContext& frame, RadianceClipmap& result, const ClipmapPlacement& placement) const {
+    result.origin = placement.origin;
+    result.voxelSize = placement.voxelSize;
+    result.around = placement.levels();
+    result.levels = layoutOf(placement).levels;
+    result.filledLevels = result.around;
+    if (isHalf()) result.unit = brightestOf(frame, placement, 0) / kLargestHalf;
+  }
+
+  float brightestOf(PassContext& frame, const ClipmapPlacement& placement, int level) const {
+    // A level cannot say anything of what lies nearer than half a voxel.
+    return light.brightest(frame, 0.5f * std::ldexp(placement.voxelSize, level));
+  }
+
+  // ---- voxels --------------------------------------------------------------------------------------------
+
+  shader::BindingSet stackBinding(PassContext& frame, const ClipmapPlacement& placement,
+                                  const ClipmapStack& stack) const {
+    clipmap_voxelize::ClipmapStack block{.stackOrigin = placement.origin,
+                                         .stackVoxel = placement.voxelSize,
+                                         .stackSide = stack.side,
+                                         .stackRow = stack.row};
+    for (int level = 0; level < placement.levels(); ++level) {
+      const auto i = static_cast<std::size_t>(level);
+      block.stackFirst[i] = {placement.first[i], 0};
+      block.stackLimits[i] = {brightestOf(frame, placement, level), std::ldexp(placement.sceneSide, -level),
+                              0.0f, 0.0f};
+    }
+    return {shader::UniformSlot<clipmap_voxelize::ClipmapStack>{"ClipmapStack"}(block)};
+  }
+
+  void fill(PassContext& frame, const RadianceClipmap& clipmap, const ClipmapPlacement& placement,
+            const std::vector<LevelRange>& ranges, std::uint64_t& room) {
+    const ClipmapStack stack(placement.resolution, placement.levels());
+    const shader::BindingSet stackBound = stackBinding(frame, placement, stack);
+    if (room == 0) {
+      // Surfaces fill about as many voxels of a level as six of its sides, twice where they lie between two
+      // layers, and slabs are a small part of it.
+      const auto side = static_cast<std::uint64_t>(placement.resolution);
+      const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
+      room = 12 * side * side * static_cast<std::uint64_t>(placement.levels()) +
+             4 * frame.sceneDescription().triangleCount();
+      room = std::clamp<std::uint64_t>(&room == &roomForAll_ ? room : room / 8, 1, most);
+    }
+    VoxelFragments fragments;
+    fragments.grid = {placement.origin, placement.voxelSize, stack.size()};
+    fragments.workGroupSize = kGroup;
+    fragments.capacity = room;
+    fragments.coverage = isSampled() ? VoxelFragments::Coverage::sum : VoxelFragments::Coverage::mean;
+    fragments.count = frame.buffer(5 * sizeof(std::uint32_t), "voxel fragment count");
+    fragments.count->clear();
+    fragments.fragments = frame.elements(clipmap_voxelize::fragments, room, "voxel fragments of levels");
+    gpu::BufferRef sideMasks;
+    if (isSampled())
+      sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
+    voxelize(frame, fragments, sideMasks, stackBound, ranges, clipmap.change.cells);
+    finish(frame, fragments.count, room);
+
+    OccupiedBricks occupied;
+    VoxelSums sums = claimSums(frame, fragments, stack.size(), true, occupied);
+    sums.kind = inject::Variant::placesClipmap;
+    sums.sideMasks = sideMasks;
+    sums.places.add(stackBound);
+    const gpu::BufferRef radiances = radiancesOf(frame, fragments, sums);
+    light.reflect(frame, fragments, sums, 0.0f, radiances);
+    addUp(frame, fragments, sums, radiances);
+    frame.dispatchIndirect(
+        frame.program(clipmap_resolve::Variant{.sampled = isSampled()}),
+        {clipmap_resolve::parameters({.brickCount = sums.brickCount, .unit = clipmap.unit}),
+         clipmap_resolve::brickList(occupied.bricks), clipmap_resolve::brickCount(occupied.count),
+         sums.bindings(), writing(clipmap)},
+        *occupied.count, OccupiedBricks::argumentsBytes(0));
+  }
+
+  /// All ranges at once, a draw at a time.
+  void voxelize(PassContext& frame, const VoxelFragments& list, const gpu::BufferRef& sideMasks,
+                const shader::BindingSet& stack, const std::vector<LevelRange>& ranges,
+                const gpu::BufferRef& changedCells) const {
+    clipmap_voxelize::Boxes boxes{};
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      boxes.boxFirst[i] = {ranges[i].voxels.first, ranges[i].level};
+      boxes.boxEnd[i] = {ranges[i].voxels.end, ranges[i].onlyChanges};
+    }
+    int mostScale = 1;
+    while (2 * mostScale <= supersampling) mostScale *= 2;
+    const gpu::BufferRef rows = frame.buffer(
+        kRowHeadBytes + kRowCapacity * clipmap_voxelize::rows.elementBytes, "rows of large triangles");
+    const auto boxCount = static_cast<std::uint32_t>(ranges.size());
+    std::uint32_t most = 0;
+    for (const SceneDraw& draw : frame.scene().draws()) most = std::max(most, draw.indexCount / 3);
+    const gpu::BufferRef few =
+        frame.buffer(kRowHeadBytes + std::uint64_t{boxCount} * std::min(most, kTrianglesAtOnce) *
+                                         clipmap_voxelize::few.elementBytes,
+                     "triangles of few voxels");
+    const shader::BindingSet lists{stack,
+                                   clipmap_voxelize::boxes(boxes),
+                                   clipmap_voxelize::count(list.count),
+                                   clipmap_voxelize::fragments(list.fragments),
+                                   clipmap_voxelize::sideMasks(sideMasks),
+                                   clipmap_voxelize::rows(rows),
+                                   clipmap_voxelize::few(few),
+                                   clipmap_voxelize::clipmapCells(changedCells)};
+    for (const SceneDraw& draw : frame.scene().draws())
+      for (std::uint32_t first = 0; first < draw.indexCount; first += 3 * kTrianglesAtOnce) {
+        const std::array<std::uint32_t, 4> none{0, 0, 1, 1};
+        rows->uploadValues(std::span<const std::uint32_t>(none));
+        few->uploadValues(std::span<const std::uint32_t>(none));
+        const std::uint32_t triangles = std::min((draw.indexCount - first) / 3, kTrianglesAtOnce);
+        const SceneBinding scene(frame, draw);
+        auto variant =
+            scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
+        const shader::BindingSet bindings{
+            scene, lists,
+            clipmap_voxelize::part({.firstIndex = static_cast<int>(draw.firstIndex + first),
+                                    .triangleCount = static_cast<int>(triangles),
+                                    .capacity = static_cast<int>(list.capacity),
+                                    .rowCapacity = static_cast<int>(kRowCapacity),
+                                    .mostScale = mostScale,
+                                    .thickness = thickness})};
+        frame.dispatch(frame.program(variant), bindings,
+                       {static_cast<int>(triangles), static_cast<int>(boxCount), 1});
+        variant.stage = clipmap_voxelize::Variant::stageSmall;
+        frame.dispatchIndirect(frame.program(variant), bindings, *few, sizeof(std::uint32_t));
+        variant.stage = clipmap_voxelize::Variant::stageLarge;
+        frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
+      }
+  }
+
+  /// Where a frame wanted more than there was room for, it is rendered again with an eighth more than that.
+  static void finish(PassContext& frame, const gpu::BufferRef& count, std::uint64_t& room) {
+    frame.dispatch(
+        frame.program(clipmap_finish::kProgram),
+        {clipmap_finish::room({static_cast<std::uint32_t>(room), kGroup}), clipmap_finish::count(count)},
+        {1, 1, 1});
+    constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);
+    frame.checkAfterFrame(count, kWantedOffset, [&room, had = room](PassContext&, std::uint32_t wanted) {
+      if (wanted > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", wanted));
+      if (wanted <= had) return true;
+      room = wanted + wanted / 8;
+      return false;
+    });
+  }
+};
+
+class ClipmapFilterPass : public Pass {
+  In<RadianceClipmap> radiance{this, "radiance", "levels as voxelized"};
+  Param<float> ramp{
+      this, "ramp", 0.25f, within(0.0f, 1.0f),
+      "share of the way from the border of the finer level to its middle over which a level goes over from what was voxelized to what the finer one makes of it; 0: with a leap"};
+  Param<float> border{
+      this, "border", 0.25f, within(0.0f, 1.0f),
+      "share of that way over which cones go on to the next coarser level; 0: within a voxel"};
+  Out<RadianceClipmap> mips{
+      this, "mips", "the same, where levels have the finer one's voxels, and with those above", Levels::all};
+
+  /// The change up to which the blocks of these volumes are made.
+  struct Made {
+    gpu::BufferRef of;
+    std::uint64_t number = 0;
+  };
+
+  void run(PassContext& frame) override {
+    RadianceClipmap result = *radiance;
+    const auto half = 0.5f * static_cast<float>(result.levels.front().own.period);
+    result.ramp = 0.5f * half * ramp;  // in voxels of the coarser level
+    result.border = std::max(half * border, 1.0f);
+    const std::shared_ptr<Made> made = frame.kept("what is made of levels", result.occupied, [&] {
+      return std::make_shared<Made>(Made{result.occupied, 0});
+    });
+    const bool all = result.change.all || made->number + 1 != result.change.number;
+    made->number = result.change.number;
+    const ItemLists lists(frame, result.levels.size(), largestMade(result));
+    const gpu::BufferRef madeAnew = frame.buffer(result.occupied->sizeBytes(), "voxels of levels made anew");
+    madeAnew->clear();
+    std::optional<ReadCells> read;
+    if (!all && result.change.cells != nullptr && stays(result)) read.emplace(frame, result);
+    // What differs from before, as it is read, lies in these, level by level.
+    VoxelRange changed = result.change.voxelized.front();
+    const int count = static_cast<int>(result.levels.size());
+    for (int level = 1; level < count; ++level) {
+      const auto i = static_cast<std::size_t>(level);
+      const RadianceClipmap::Level& there = result.levels[i];
+      const bool above = level >= result.around;
+      const RadianceClipmap::Block& block = above ? there.own : there.inner;
+      const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
+      VoxelRange touched = coarserTouching(changed);
+      if (!above) touched = touched.around(result.change.voxelized[i]);
+      // Where the finer level has moved its border has, and with it the ramp.
+      const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
+      changed = anew ? touched.around(block.voxels) : touched;
+      if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
+      // Of the first level above those around the camera it is known, too.
+      const bool listed = read && level <= result.around;
+      if (listed) read->find(frame, result, level);
+      make(frame, result, lists, madeAnew, listed ? &read->lists : nullptr, level,
+           (anew ? addresses : touched).within(addresses), all);
+    }
+    result.filledLevels = count;
+    mips = result;
+  }
+
+  /// Voxels of the largest block that is made.
+  static std::uint64_t largestMade(const RadianceClipmap& clipmap) {
+    std::uint64_t result = 0;
+    for (std::size_t level = 1; level < clipmap.levels.size(); ++level) {
+      const RadianceClipmap::Level& there = clipmap.levels[level];
+      const bool above = static_cast<int>(level) >= clipmap.around;
+      const auto along = static_cast<std::uint64_t>((above ? there.own : there.inner).period);
+      result = std::max(result, along * along * along);
+    }
+    return result;
+  }
+
+  /// While no level moves, the cells in which what is read differs from before, listed level by level.
+  struct ReadCells {
+    std::uint64_t cells;
+    gpu::BufferRef flags;
+    ItemLists lists;
+
+    ReadCells(PassContext& frame, const RadianceClipmap& clipmap)
+        : cells(cellsOfLevel(clipmap.levels.front().own.period)),
+          flags(frame.elements(clipmap_coarser::readCells,
+                               cells * (static_cast<std::uint64_t>(clipmap.around) + 1),
+                               "cells of levels that are read otherwise")),
+          lists(frame, clipmap.levels.size(), cells) {}
+    void find(PassContext& frame, const RadianceClipmap& clipmap, int level) const {
+      frame.dispatchList(
+          frame.program(clipmap_coarser::kProgram),
+          {clipmapBinding(clipmap), clipmap_coarser::level({level}), clipmap_coarser::readCells(flags),
+           clipmap_coarser::clipmapCells(clipmap.change.cells), lists.bindings()},
+          cells);
+    }
+  };
+
+  /// Of a level what differs in these voxels.
+  static void make(PassContext& frame, const RadianceClipmap& clipmap, const ItemLists& lists,
+                   const gpu::BufferRef& madeAnew, const ItemLists* cells, int level, const VoxelRange& part,
+                   bool all) {
+    if (part.empty()) return;
+    const auto i = static_cast<std::size_t>(level);
+    const bool above = level >= clipmap.around;
+    clipmap_anew::Level differing{.firstMade = part.first, .level = level, .endMade = part.end};
+    if (!all) {
+      differing.had = hadOf(clipmap.change.before[i]);
+      differing.finerHad = hadOf(clipmap.change.before[i - 1]);
+    }
+    const shader::BindingSet bindings{clipmapBinding(clipmap),
+                                      clipmap_anew::level(differing),
+                                      lists.bindings(),
+                                      clipmap_anew::madeAnew(madeAnew),
+                                      clipmap_anew::clipmapOccupied(clipmap.occupied),
+                                      clipmap_anew::clipmapCells(clipmap.change.cells)};
+    clipmap_anew::Variant variant{.above = above, .cells = !all && clipmap.change.cells != nullptr};
+    if (cells != nullptr) {
+      variant.listed = 1;
+      frame.dispatchIndirect(
+          frame.program(variant),
+          {bindings, clipmap_anew::cellHeads(cells->heads), clipmap_anew::cellItems(cells->items)},
+          *cells->heads, ItemLists::argumentsBytes(i));
+    } else {
+      frame.dispatch(frame.program(variant), bindings, part.size());
+    }
+    frame.dispatchIndirect(
+        frame.program(clipmap_filter::Variant{.above = above}),
+        {clipmap_filter::level({part.first, level}), facesOf(clipmap.faces, gpu::Sampling::nearest),
+         writing(clipmap), lists.bindings()},
+        *lists.heads, ItemLists::argumentsBytes(i));
+  }
+
+  /// What a level had.
+  static clipmap_anew::Had hadOf(const RadianceClipmap::Level& level) {
+    int endless = 0;  // LevelEnds::endless
+    for (int axis = 0; axis < 3; ++axis) {
+      if (level.reachFirst[axis] <= -RadianceClipmap::kEndless) endless |= 1 << axis;
+      if (level.reachEnd[axis] >= RadianceClipmap::kEndless) endless |= 8 << axis;
+    }
+    return {.ownFirst = {level.own.voxels.first, endless},
+            .ownEnd = {level.own.voxels.end, 0},
+            .innerFirst = {level.inner.voxels.first, 0},
+            .innerEnd = {level.inner.voxels.end, 0}};
+  }
+  static bool stays(const RadianceClipmap& clipmap) {
+    for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
+      if (hasMoved(clipmap, level)) return false;
+    return true;
+  }
+  static bool hasMoved(const RadianceClipmap& clipmap, std::size_t level) {
+    return clipmap.levels[level].own.voxels != clipmap.change.before[level].own.voxels;
+  }
+};
+
+}  // namespace
+
+void addClipmap(TechniqueRegistry& registry) {
+  registry.add<ClipmapPass>("clipmap",
+                            "Levels of voxels around the camera, lit (3D clipmap: thesis Sec. 3.5)");
+  registry.add<ClipmapFilterPass>("clipmap_filter",
+                                  "Levels of a clipmap from their finer ones (thesis Sec. 3.5)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing

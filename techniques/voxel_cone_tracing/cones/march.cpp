@@ -1,0 +1,177 @@
+#include "march.h"
+
+#include <fmt/format.h>
+
+#include "../clipmap/clipmap.h"
+#include "../dense/levels.h"
+#include "../octree/octree.h"
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/bindings.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+namespace gather = shaders::voxel_cone_tracing::gather;
+
+namespace {
+
+/// What every store says of itself; `block` holds the rest of the block Store.
+StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
+  StoreBinding result;
+  block.storeLow = grid.low;
+  block.storeVoxel = result.voxel = grid.voxelSize;
+  block.storeExtent = glm::vec3(grid.resolution) * grid.voxelSize;
+  result.grid = grid;
+  result.axis = axis;
+  result.length = 2.0f * glm::length(block.storeExtent);
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(block));
+  return result;
+}
+
+}  // namespace
+
+StoreBinding storeOf(const RadianceGrid& grid) {
+  StoreBinding result =
+      begun(gather::Variant::storeDense, grid.grid,
+            {.storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
+             .storeUnit = grid.unit,
+             .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel});
+  result.holdsMedia = grid.holdsMedia;
+  result.bounces = grid.bounces;
+  result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers) {
+  StoreBinding result = begun(gather::Variant::storeDirectional, grid.grid,
+                              {.storeCoarsest = static_cast<float>(grid.filledLevels - 1),
+                               .storeUnit = grid.unit,
+                               .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
+                               .storeLayers = layers,
+                               .storeVoxels = glm::vec3(grid.grid.resolution)});
+  result.holdsMedia = grid.holdsMedia;
+  const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
+  result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
+  result.add(facesOf(grid.faces, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
+  // The box of the coarsest level around the camera, in finest voxels.
+  const int coarsest = clipmap.around - 1;
+  const VoxelRange& voxels = clipmap.levels[static_cast<std::size_t>(coarsest)].own.voxels;
+  const GridPlacement box{clipmap.origin + clipmap.sizeOf(coarsest) * glm::vec3(voxels.first),
+                          clipmap.voxelSize, voxels.size() * (1 << coarsest)};
+  StoreBinding result = begun(gather::Variant::storeClipmap, box,
+                              {.storeCoarsest = static_cast<float>(clipmap.filledLevels - 1),
+                               .storeUnit = clipmap.unit,
+                               .storeLayers = layers});
+  result.add(clipmapBinding(clipmap));
+  result.add(facesOf(clipmap.faces, gpu::Sampling::linear));
+  return result;
+}
+
+StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
+  const VoxelOctree& tree = octree.tree;
+  // With the empty voxels that a dense grid has at its high ends: a wall in the last voxels is read to half a
+  // voxel of every level behind it, and a cone that ended with it would take half of the wall for open.
+  GridPlacement whole = tree.grid;
+  whole.resolution = evenlyHalved(whole.resolution);
+  StoreBinding result =
+      begun(gather::Variant::storeOctree, whole,
+            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
+             .storeUnit = octree.unit,
+             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel,
+             .storeLayers = layers});
+  if (tree.nodes == nullptr && descends)
+    throw Error(
+        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  if (octree.faces > 1 && tree.nodes != nullptr)
+    throw Error(
+        "voxel_cone_tracing: cones read six faces in bricks of their own voxels alone; expected 'bricks own' in voxel_cone_tracing.octree, or 'faces one' in voxel_cone_tracing.octree_inject");
+  result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
+                  : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
+                                                       : gather::Variant::lookUpDescent;
+  result.faces = octree.faces > 1 ? gather::Variant::facesSix : gather::Variant::facesOne;
+  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
+      {.firstVoxel = tree.firstVoxel(),
+       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
+  // What is not read as published fetches texels.
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
+  result.add(OctreeBinding(tree, octree.poolShift));
+  return result;
+}
+
+StoreInput::StoreInput(Pass* pass)
+    : grid_(pass, "grid", Presence::optional, "pre-filtered radiance, one mip per halving", Needs::nothing,
+            Levels::all),
+      directions_(pass, "directions", Presence::optional,
+                  "in place of 'grid': pre-filtered radiance of the six faces of voxels", Needs::nothing,
+                  Levels::all),
+      octree_(pass, "octree", Presence::optional,
+              "in place of 'grid': pre-filtered radiance in a sparse voxel octree", Needs::nothing,
+              Levels::all),
+      clipmap_(pass, "clipmap", Presence::optional,
+               "in place of 'grid': pre-filtered radiance in levels around the camera", Needs::nothing,
+               Levels::all),
+      lookUp_(
+          pass, "look_up", LookUp::ranks,
+          "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
+      reading_(
+          pass, "reading", Reading::layers,
+          "of 'directions', 'clipmap' and an octree with six faces: each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
+}
+
+StoreBinding StoreInput::binding() const {
+  const int stores = grid_.present() + directions_.present() + octree_.present() + clipmap_.present();
+  if (stores != 1)
+    throw Error(fmt::format(
+        "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions', 'octree' and 'clipmap' to be connected",
+        stores == 0 ? "no store" : "several stores"));
+  if (grid_.present()) return storeOf(*grid_);
+  if (clipmap_.present()) return storeOf(*clipmap_, reading_ == Reading::layers);
+  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers)
+                               : storeOf(*octree_, lookUp_ == LookUp::descent, reading_ == Reading::layers);
+}
+
+ConeMarch::ConeMarch(Pass* pass)
+    : step_(pass, "step", MarchSettings{}.step, within(0.05f, 2.0f),
+            "step along a cone as a share of its diameter"),
+      offset_(pass, "offset", MarchSettings{}.offset, within(0.0f, 8.0f),
+              "start of a cone along the normal, in voxels"),
+      start_(pass, "start", MarchSettings{}.start, within(0.0f, 8.0f),
+             "start of a cone along its axis, in voxels"),
+      clearance_(
+          pass, "clearance", MarchSettings{}.clearance, within(0.0f, 1e3f),
+          "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"),
+      footprint_(
+          pass, "footprint", MarchSettings{}.footprint, within(0.25f, 1.0f),
+          "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"),
+      refinement_(
+          pass, "refinement", MarchSettings{}.refinement, within(0.0f, 1.0f),
+          "least voxels that are read where they are partly covered, as a share of those that the cone asks for; 1: none smaller; 0: the finest"),
+      reach_(pass, "reach", MarchSettings{}.reach, within(0.0f, 1e9f), "m",
+             "length of a cone; 0: to the end of the grid"),
+      jitter_(
+          pass, "jitter", MarchSettings{}.jitter, within(0.0f, 1.0f),
+          "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands") {
+}
+
+shader::BindingSet ConeMarch::binding(const PassContext& frame, const StoreBinding& store) const {
+  return MarchSettings{step_, offset_, start_, clearance_, footprint_, refinement_, reach_, jitter_}.binding(
+      frame, store);
+}
+
+shader::BindingSet MarchSettings::binding(const PassContext& frame, const StoreBinding& store) const {
+  return {shader::UniformSlot<gather::March>{"March"}({.environment = frame.sceneDescription().environment,
+                                                       .maxDistance = reach > 0.0f ? reach : store.length,
+                                                       .stepShare = step,
+                                                       .offset = offset,
+                                                       .startShare = start,
+                                                       .clearance = clearance,
+                                                       .footprint = footprint,
+                                                       .leastShare = refinement,
+                                                       .jitter = jitter,
+                                                       .seed = seedWords(frame)})};
+}
+
+}  // namespace lumivox::voxel_cone_tracing

@@ -1,0 +1,426 @@
+// Injection of direct light: Crassin et al. 2011, Sec. 6; thesis Gomes 2015, Sec. 4.2.1. The mean of what the
+// fragments of each occupied voxel reflect, to all sides alike or by the six faces, independent of their
+// order.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "../changed_cells.h"
+#include "../cones/march.h"
+#include "../direct_light.h"
+#include "../octree/octree.h"
+#include "../voxel_sums.h"
+#include "levels.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/media.h"
+#include "lumivox/toolkit/volume_room.h"
+
+namespace lumivox::voxel_cone_tracing {
+namespace {
+
+using namespace shaders::voxel_cone_tracing;
+
+/// Bounces beyond the first, by light that cones gather for every fragment: members of a pass.
+class Bounces {
+ public:
+  explicit Bounces(Pass* pass)
+      : count_(
+            pass, "bounces", 1, within(1, 256),
+            "times that light was reflected where the cones find it: 1, as published; for each one more cones gather it for every fragment through the grid of the one before"),
+        cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
+  int count() const { return count_; }
+  int cones() const { return cones_; }
+
+ private:
+  Param<int> count_, cones_;
+};
+
+/// Injection into grids: members of a pass.
+class Injection {
+ public:
+  /// Geometry: bounds of what moves.
+  static constexpr Reads kReads = Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
+
+  explicit Injection(Pass* pass)
+      : fragments_(pass, "fragments", "surface samples"),
+        light_(pass),
+        storeMedia_(
+            pass, "store_media", false,
+            "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"),
+        precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
+
+  /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
+  /// fit, nothing of it is taken, and the Error says what would.
+  std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
+                                     bool coarserLevels) const {
+    return roomFor(frame, placement().resolution, count, format(), label, coarserLevels,
+                   count == 1 ? "a grid" : "six directional grids");
+  }
+
+  /// A grid that is changed where it lies, and what it was made of.
+  struct KeptGrid {
+    std::vector<gpu::TextureRef> textures;
+    ChangedBricks changed{std::make_shared<ChangedBricks::Levels>(), 0, {}};
+    /// Of the frame before: bounds of what moved, the cells of its fragments, and the occupied voxels.
+    std::vector<Bounds> moving;
+    gpu::BufferRef movingCells, bricks;
+    CellFragments still;
+  };
+
+  /// As long as static geometry and the lights on it stay where they are; null where that is not known.
+  template <class MakeRooms>
+  std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, const Bounces& bounces, MakeRooms&& makeRooms) {
+    // Every bounce changes all of the light.
+    if (bounces.count() > 1 || !knowsStill() || !changes_.moving(frame)) return nullptr;
+    float unit = 1.0f;
+    const auto key =
+        std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightestOf(frame, unit)));
+    return frame.kept("voxels of static geometry in unchanged light", key, [&] {
+      auto result = std::make_shared<KeptGrid>();
+      result->textures = makeRooms();
+      return result;
+    });
+  }
+
+  /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
+  /// of them. `kept`: of the same textures, or null.
+  template <class Grid>
+  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
+            const Bounces& bounces, KeptGrid* kept, const FaceRule& faces = {}) {
+    result.grid = placement();
+    result.holdsMedia = storesMedia();
+    // Every bounce adds less than the one before.
+    const float brightest = brightestOf(frame, result.unit, bounces.count());
+
+    OccupiedBricks occupied;
+    const bool onlyChanges = kept != nullptr && kept->bricks != nullptr;
+    ChangedCells changed;
+    VoxelSums sums;
+    if (onlyChanges) {
+      changed = changesOf(frame, *kept);
+      sums = claimChanged(frame, *fragments_, result.grid.resolution, textures.size() > 1, changed,
+                          kept->bricks, occupied, kept->changed.bricks);
+    } else {
+      sums = claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    }
+    sums.faces = faces;
+    // Media lie beside the surfaces' bricks.
+    if (!result.holdsMedia) result.occupied = occupied;
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : occupied;
+    resolve(frame, sums, brightest, result.unit, result.holdsMedia, bricks, textures);
+    for (int bounce = 1; bounce < bounces.count(); ++bounce) {
+      if constexpr (std::is_same_v<Grid, RadianceGrid>) {
+        fillLevels(frame, result, Opacity::facing);
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result));
+      } else {
+        fillLevels(frame, result);
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
+      }
+      resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
+    }
+    result.filledLevels = 1;
+    if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
+    if (kept == nullptr) return;
+    if (!onlyChanges) kept->movingCells = Changes::movingCells(frame, *fragments_).bits;
+    kept->bricks = sums.bricks;
+    kept->moving = *changes_.moving(frame);
+    ++kept->changed.number;
+    result.changed = kept->changed;
+  }
+
+  /// Makes the bricks of result.tree, and fills those of the leaves.
+  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces) {
+    if (storesMedia())
+      throw Error(
+          "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
+    if (result.faces > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
+      throw Error(
+          "voxel_cone_tracing.octree_inject: the six faces of a coarse voxel are seen through eight whole ones, and voxels at corners or in leaves cover halves of others; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'faces one'");
+    if (bounces.count() > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
+      throw Error(
+          "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
+    const float brightest = brightestOf(frame, result.unit, bounces.count());
+    // Every bounce changes all of the light.
+    if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
+    const VoxelSums sums = leafSums(frame, result);
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    resolveLeaves(frame, result, sums, addsUp());
+    for (int bounce = 1; bounce < bounces.count(); ++bounce) {
+      fillLevels(frame, result);
+      reflect(frame, sums, direct, brightest, bounces.cones(),
+              storeOf(result, result.tree.ranks == nullptr, true));
+      resolveLeaves(frame, result, sums, addsUp());
+    }
+    result.filledLevels = 1;
+  }
+
+  bool isHalf() const { return precision_ == Precision::half; }
+  gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
+
+ private:
+  enum class Precision { float_, half };
+
+  In<VoxelFragments> fragments_;
+  DirectLight light_;
+  Param<bool> storeMedia_;
+  Param<Precision> precision_;
+
+  /// Static geometry in the light of one moment, and what moved in that light.
+  struct StillLight {
+    std::shared_ptr<const RadianceOctree> octree;
+    std::vector<Bounds> moving;
+    CellFragments cells;
+  };
+  Changes changes_;
+  /// Of the frame before: only what did not change in it is worth keeping.
+  std::pair<gpu::BufferRef, LightPlacement> before_;
+
+  /// Whether what stands still is known apart, and light on it changes only in the shadows of what moves.
+  bool knowsStill() const {
+    return fragments_->still != nullptr && !light_.media.present() && fragments_->reflected == nullptr;
+  }
+
+  /// What has changed since the frame before: both that moves now and what did then.
+  ChangedCells changesOf(PassContext& frame, KeptGrid& kept) {
+    if (kept.still.ends == nullptr) kept.still = sortedByCells(frame, stillOf(*fragments_));
+    return Changes::cells(frame, *fragments_, kept.still, light_.shadow,
+                          Changes::atEither(*changes_.moving(frame), kept.moving), &kept.movingCells);
+  }
+
+  /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
+  /// where they have moved in this frame.
+  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, int faces,
+                                       float brightest) {
+    if (tree.still == nullptr || !knowsStill()) return {};
+    auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
+    const bool stays = key == before_;
+    before_ = key;
+    const auto moving = changes_.moving(frame);
+    if (!stays || !moving) return {};
+    return frame.kept("light of static geometry", key, [&] {
+      RadianceOctree still;
+      still.tree = *tree.still;
+      still.faces = faces;
+      brightestOf(frame, still.unit);
+      const VoxelSums sums = leafSums(frame, still);
+      average(frame, stillOf(*fragments_), sums, brightest);
+      resolveLeaves(frame, still, sums, addsUp());
+      return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
+                        sortedByCells(frame, stillOf(*fragments_))};
+    });
+  }
+
+  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known.
+  std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
+    const std::optional<StillLight> still = stillLight(frame, octree.tree, octree.faces, brightest);
+    if (!still) return nullptr;
+    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow,
+                                    Changes::atEither(*changes_.moving(frame), still->moving));
+    return still->octree;
+  }
+
+  VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {
+    VoxelSums sums;
+    sums.kind = inject::Variant::placesOctree;
+    sums.directional = result.faces > 1;
+    sums.voxels = sums.directional ? makePool(frame, result, format(), add::directionalSums)
+                                   : makePool(frame, result, format(), add::sums);
+    sums.places = OctreeBinding(result.tree, result.poolShift);
+    if (result.still == nullptr) return sums;
+    sums.changed = &result.changed;
+    sums.places.add(stillBinding(result));
+    return sums;
+  }
+
+  GridPlacement placement() const {
+    GridPlacement grid = fragments_->grid;
+    grid.resolution = evenlyHalved(grid.resolution);
+    return grid;
+  }
+  bool storesMedia() const { return storeMedia_ && light_.media.present(); }
+  /// No voxel can reflect more; and of half floats the unit.
+  float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
+    // A grid cannot say anything of what lies nearer than half a voxel. What cones gather for further bounces
+    // is at most what the voxels of the bounce before hold, or the environment.
+    float brightest =
+        static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
+    const glm::vec3& sky = frame.sceneDescription().environment;
+    if (bounces > 1) brightest += std::max({sky.r, sky.g, sky.b});
+    if (isHalf()) unit = brightest / kLargestHalf;
+    return brightest;
+  }
+  bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
+
+  /// The sums of occupied voxels; returns what fragments reflect of the direct light.
+  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums,
+                         float brightest) {
+    const gpu::BufferRef radiances = radiancesOf(frame, list, sums);
+    light_.reflect(frame, list, sums, brightest, radiances);
+    addUp(frame, list, sums, radiances);
+    return radiances;
+  }
+
+  /// The sums of what fragments reflect of the direct light and of what cones find in the store.
+  void reflect(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& direct, float mostRadiance,
+               int cones, const StoreBinding& store) {
+    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
+    sums.voxels->clear(0u);
+    const MediaBinding bound(frame, light_.media, !store.holdsMedia);
+    const bounce::Variant variant{.directions = sums.directional,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis,
+                                  .store = store.axis,
+                                  .lookUp = store.lookUp,
+                                  .faces = store.faces,
+                                  .places = sums.kind};
+    // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
+    // nothing in a closed room. With one value for all sides what they begin in is the surface itself.
+    const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
+    forEachFragment(frame, frame.program(variant),
+                    {bounce::parameters({.gridLow = fragments_->grid.low,
+                                         .voxelSize = fragments_->grid.voxelSize,
+                                         .brickCount = sums.brickCount,
+                                         .coneCount = cones,
+                                         .mostRadiance = mostRadiance,
+                                         .twoSided = light_.twoSided}),
+                     bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
+                     march.binding(frame, store), bound},
+                    *fragments_);
+    addUp(frame, *fragments_, sums, radiances);
+  }
+
+  /// The finest levels from the sums: of these bricks alone, or of all voxels where media lie in them.
+  void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
+               const OccupiedBricks& bricks, std::span<const gpu::TextureRef> textures) {
+    const LightBinding lights(light_.shadow);
+    const MediaBinding bound(frame, light_.media, holdsMedia);
+    const auto& program = frame.program(resolve::Variant{.directions = sums.directional,
+                                                         .lights = holdsMedia && light_.shadow.present(),
+                                                         .medium = bound.axis,
+                                                         .changed = sums.changed != nullptr});
+    const GridPlacement grid = placement();
+    shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
+                                                     .unit = unit,
+                                                     .resolution = grid.resolution,
+                                                     .coverageSum = addsUp(),
+                                                     .gridLow = grid.low,
+                                                     .voxelSize = grid.voxelSize,
+                                                     .lightCount = lights.count,
+                                                     .mediumSteps = light_.mediumSteps,
+                                                     .mostRadiance = mostRadiance}),
+                                resolve::brickList(bricks.bricks),
+                                resolve::brickCount(bricks.count),
+                                sums.bindings(),
+                                lights,
+                                bound};
+    if (sums.directional) {
+      bindings.add(
+          shader::BindingSet{resolve::positiveXImage(textures[0]), resolve::negativeXImage(textures[1]),
+                             resolve::positiveYImage(textures[2]), resolve::negativeYImage(textures[3]),
+                             resolve::positiveZImage(textures[4]), resolve::negativeZImage(textures[5])});
+    } else {
+      bindings.add(resolve::radianceImage(textures[0]));
+    }
+    if (holdsMedia) {
+      frame.dispatch(program, bindings, grid.resolution);
+      return;
+    }
+    if (sums.changed == nullptr)
+      for (const gpu::TextureRef& texture : textures) texture->clear(glm::vec4(0.0f), 0);
+    frame.dispatchIndirect(program, bindings, *bricks.count, OccupiedBricks::argumentsBytes(0));
+  }
+};
+
+class InjectPass : public Pass {
+  Injection injection{this};
+  Bounces bounces{this};
+  Param<bool> mips{this, "mips", true,
+                   "room for the coarser levels that 'filter' fills; 'filter_directional' needs none"};
+  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
+                             Levels::finest};
+
+  Reads readsFrom() const override { return Injection::kReads; }
+  int indirectBounces() const override { return bounces.count(); }
+
+  void run(PassContext& frame) override {
+    if (bounces.count() > 1 && !mips)
+      throw Error(
+          "voxel_cone_tracing.inject: further bounces are gathered through coarser levels, for which there is no room; expected 'mips on' or 'bounces 1'");
+    const auto rooms = [&] { return injection.rooms(frame, 1, "radiance grid", mips); };
+    const auto kept = injection.keptGrid(frame, bounces, rooms);
+    RadianceGrid result;
+    result.radiance = (kept != nullptr ? kept->textures : rooms()).front();
+    injection.fill(frame, result, {&result.radiance, 1}, bounces, kept.get());
+    radiance = result;
+  }
+};
+
+class InjectDirectionalPass : public Pass {
+  enum class OpaqueAlong { facing, all };
+
+  Injection injection{this};
+  Bounces bounces{this};
+  Param<float> backWeight{
+      this, "back_weight", FaceRule{}.backWeight, within(0.0f, 1.0f),
+      "of the back of a fragment in the mean of a face, where fronts have 1: the dark insides of a thin wall do not count beside its lit face; 0: the backs of sheets are dark"};
+  Param<OpaqueAlong> opaqueAlong{
+      this, "opaque_along", OpaqueAlong::facing,
+      "axes along which a fragment closes its voxel: as far as it faces them, or all, as in one grid"};
+  Out<DirectionalRadianceGrid> radiance{
+      this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
+      Levels::finest};
+
+  Reads readsFrom() const override { return Injection::kReads; }
+  int indirectBounces() const override { return bounces.count(); }
+
+  void run(PassContext& frame) override {
+    const auto rooms = [&] { return injection.rooms(frame, 6, "radiance grid of one side", true); };
+    const auto kept = injection.keptGrid(frame, bounces, rooms);
+    DirectionalRadianceGrid result;
+    std::ranges::copy(kept != nullptr ? kept->textures : rooms(), result.faces.begin());
+    injection.fill(frame, result, result.faces, bounces, kept.get(),
+                   {backWeight, opaqueAlong == OpaqueAlong::all});
+    radiance = result;
+  }
+};
+
+class OctreeInjectPass : public Pass {
+  Injection injection{this};
+  Bounces bounces{this};
+  enum class Faces { one, six };
+  In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
+  Param<Faces> faces{
+      this, "faces", Faces::one,
+      "of a voxel: one, the same from all sides; or six at all levels, each with its own light and opacity, as those of inject_directional (Crassin et al. 2011, Sec. 8.1; thesis Sec. 3.1.3)"};
+  Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
+                               Levels::finest};
+
+  Reads readsFrom() const override { return Injection::kReads; }
+  int indirectBounces() const override { return bounces.count(); }
+
+  void run(PassContext& frame) override {
+    RadianceOctree result;
+    result.tree = *tree;
+    result.faces = faces == Faces::six ? 6 : 1;
+    injection.fill(frame, result, bounces);
+    radiance = result;
+  }
+};
+
+}  // namespace
+
+void addInject(TechniqueRegistry& registry) {
+  registry.add<InjectPass>("inject", "Direct light into the finest level (Crassin et al. 2011, Sec. 6)");
+  registry.add<InjectDirectionalPass>(
+      "inject_directional",
+      "Direct light into the finest level of six directional grids (thesis Gomes 2015, Sec. 4.2.1, Table 1)");
+  registry.add<OctreeInjectPass>(
+      "octree_inject", "Direct light into the leaves of a sparse voxel octree (Crassin et al. 2011, Sec. 6)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing

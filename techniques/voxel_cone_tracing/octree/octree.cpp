@@ -1,0 +1,332 @@
+// The nodes of a sparse voxel octree from a list of fragments: Crassin et al. 2011, Sec. 4; thesis Gomes
+// 2015, Sec. 3.1.1 and 4.2.2.
+#include "octree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "../changed_cells.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/room.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+using namespace shaders::voxel_cone_tracing;
+
+OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
+    : shader::BindingSet{
+          shader::UniformSlot<octree_nodes::Octree>{"Octree"}({.octreeDepth = tree.depth,
+                                                               .octreePoolShift = poolShift,
+                                                               .octreeRanked = tree.ranks != nullptr,
+                                                               .octreeSide = tree.brickSide()}),
+          // A tree without one of them has the other, which a shader that asks first never
+          // reads in its place.
+          shader::StorageSlot{"OctreeRanks"}(tree.ranks != nullptr ? tree.ranks : tree.nodes),
+          shader::StorageSlot{"OctreeNodes"}(tree.nodes != nullptr ? tree.nodes : tree.ranks),
+          shader::StorageSlot{"OctreeLevels"}(tree.levels),
+          shader::StorageSlot{"OctreeBricks"}(tree.bricks)} {
+  if (tree.bricksAre == VoxelOctree::Bricks::published) return;
+  add(shader::StorageSlot{"OctreeShown"}(tree.shown));
+  add(shader::StorageSlot{"OctreeCorners"}(tree.corners));
+}
+
+namespace {
+
+/// Bytes of a tree of a depth or of a lesser one: of tags and ranks, and of nodes with their places, as far
+/// as they have been counted.
+struct TreeBytes {
+  std::uint64_t tags = 0, nodes = 0;
+};
+TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
+  const bool own = tree.bricksAre == VoxelOctree::Bricks::own;
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)], all = tree.brickRoom,
+                      records = tree.recordRoom * bricks / all;
+  return {firstTagWord(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
+          bricks * VoxelOctree::kBrickBytes +
+              records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
+}
+/// And of its bricks, with the sums that fill the leaves.
+std::uint64_t brickBytes(const VoxelOctree& tree, int depth, const VoxelBytes& voxel) {
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
+                      leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
+                                         : bricks;
+  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxel.texels + 8 * leaves * voxel.sums;
+}
+
+}  // namespace
+
+void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& voxel, bool holdsTree) {
+  if (!tree.needsMore) return;
+  const TreeBytes all = treeBytes(tree, tree.depth);
+  const std::uint64_t held = holdsTree ? all.tags + all.nodes : 0;
+  const auto bytesOf = [&](int depth) {
+    const TreeBytes some = treeBytes(tree, depth);
+    return some.tags + some.nodes + brickBytes(tree, depth, voxel);
+  };
+  const auto missing = [&](int depth) {
+    return whyNoRoom(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
+  };
+  const std::string why = missing(tree.depth);
+  if (why.empty()) return;
+  int fits = tree.depth - 1;
+  while (fits >= 0 && !missing(fits).empty()) --fits;
+  throw Error(fmt::format(
+      "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it {} ({})",
+      tree.grid.longest(), tree.bricksDownTo.back() > 0 ? "" : "at least ", formatBytes(bytesOf(tree.depth)),
+      formatBytes(all.tags), formatBytes(all.nodes), tree.bricksDownTo.back(),
+      formatBytes(brickBytes(tree, tree.depth, voxel)),
+      fits < 0 ? "none fits"
+               : fmt::format("the largest that fits is {}", tree.grid.longest() >> (tree.depth - fits)),
+      why));
+}
+
+shader::BindingSet stillBinding(const RadianceOctree& octree) {
+  if (octree.still == nullptr) return {};
+  return {bindingOf(octree.changed, octree.still->poolShift),
+          shader::StorageSlot{"StillRanks"}(octree.still->tree.ranks),
+          shader::SampledSlot{"stillPool"}(octree.still->radiance, gpu::Sampling::nearest)};
+}
+
+void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                  const VoxelOctree& tree, int depth, int threads) {
+  const auto kind = static_cast<std::uint64_t>(
+      std::find(VoxelOctree::kThreads.begin(), VoxelOctree::kThreads.end(), threads) -
+      VoxelOctree::kThreads.begin());
+  const std::uint64_t words = VoxelOctree::kLevelsBegin +
+                              VoxelOctree::kLevelWords * static_cast<std::uint64_t>(depth) +
+                              VoxelOctree::kLevelGroups + 3 * kind;
+  frame.dispatchIndirect(program, bindings, *tree.levels, words * sizeof(std::uint32_t));
+}
+
+namespace {
+
+class OctreePass : public Pass {
+  using Voxels = VoxelOctree::Voxels;
+  using Bricks = VoxelOctree::Bricks;
+
+  In<VoxelFragments> fragments{this, "fragments", "surface samples"};
+  Param<Voxels> voxels{
+      this, "voxels", Voxels::asGrid,
+      "where voxels lie: at all levels as in a dense grid; at the corners of nodes (Crassin et al. 2011); in the eighths of leaves, with only the nodes that fragments lie in (as published in the thesis)"};
+  PublishedForm asPublished{
+      this,
+      "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places; neighbours are found from the root by every fragment at every depth (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
+  Param<Bricks> bricks{
+      this, "bricks", Bricks::own,
+      "voxels of a brick: its own 2 x 2 x 2, each voxel held once, and neighbours' found by rank; or, as published, 3 x 3 x 3 with those that neighbours hold too. Own ones are those of 'voxels as_grid' with 'as_published off'; elsewhere bricks are as published"};
+  Out<VoxelOctree> tree{this, "tree", "nodes, and places for their bricks"};
+
+  /// What trees need: the most that any frame wanted, which is what later ones get.
+  struct Room {
+    std::uint32_t bricks = 0, leaves = 0;
+    std::uint32_t records = 0;               ///< tiles of nodes, or bricks around nodes
+    std::vector<std::uint32_t> bricksAbove;  ///< those of lesser depths, by depth
+    bool operator==(const Room&) const = default;
+  };
+  Room room_, stillRoom_;
+  std::optional<Room> roomBefore_, stillRoomBefore_;  ///< of the run before
+
+  /// A bit for each node that could be: those that have bricks, and those in which reading finds something,
+  /// which are the same where bricks hold all that their nodes show.
+  struct Tags {
+    gpu::BufferRef nodes, shown;
+  };
+  struct Still {
+    Tags tags;
+    std::shared_ptr<const VoxelOctree> tree;
+  };
+
+  void run(PassContext& frame) override {
+    auto [result, tags] = placed(frame, room_, roomBefore_);
+    if (asPublished) {
+      subdivide(frame, result);
+    } else if (result.bricksAre == Bricks::own && fragments->still != nullptr) {
+      const Still& still =
+          frame.kept("nodes of static geometry", fragments->still, [&] { return nodesOfStill(frame); });
+      result.still = still.tree;
+      const int words = static_cast<int>(wordsOf(result));
+      frame.dispatchList(frame.program(octree_copy_tags::kProgram),
+                         {octree_copy_tags::words({words}), octree_copy_tags::stillTags(still.tags.nodes),
+                          octree_copy_tags::stillShown(still.tags.shown), octree_copy_tags::tags(tags.nodes),
+                          octree_copy_tags::shown(tags.shown)},
+                         wordsOf(result));
+      mark(frame, result, movingOf(*fragments), tags, {.moving = 1});
+      write(frame, result, tags, room_);
+    } else {
+      mark(frame, result, *fragments, tags, {});
+      write(frame, result, tags, room_);
+    }
+    if (result.bricksAre == Bricks::published && !asPublished)
+      forEachBrick(frame, frame.program(octree_neighbours::kProgram), {OctreeBinding(result)}, result,
+                   result.depth + 1, 1);
+    judge(frame, result, room_);
+    tree = result;
+  }
+
+  Still nodesOfStill(PassContext& frame) {
+    auto [result, tags] = placed(frame, stillRoom_, stillRoomBefore_);
+    Still still{tags, nullptr};
+    mark(frame, result, stillOf(*fragments), still.tags, {});
+    write(frame, result, still.tags, stillRoom_);
+    judge(frame, result, stillRoom_);
+    still.tree = std::make_shared<const VoxelOctree>(result);
+    return still;
+  }
+
+  /// A tree with so much room, and nothing in it; and its tags.
+  std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room,
+                                      std::optional<Room>& before) const {
+    VoxelOctree result;
+    result.grid = fragments->grid;
+    result.voxels = voxels;
+    if (voxels == Voxels::asGrid && !asPublished) result.bricksAre = bricks;
+    result.depth = voxelDepthOver(result.grid) - 1;
+    result.brickRoom = std::max(room.bricks, 1u);
+    result.leafRoom = std::max(room.leaves, 1u);
+    result.recordRoom = std::max(room.records, 1u);
+    result.needsMore = before != room;
+    result.bricksDownTo.assign(static_cast<std::size_t>(result.depth) + 1, 0);
+    for (std::size_t depth = 1; depth < std::min(room.bricksAbove.size(), result.bricksDownTo.size());
+         ++depth)
+      result.bricksDownTo[depth - 1] = room.bricksAbove[depth];
+    result.bricksDownTo.back() = room.bricks;
+    before = room;
+    requireRoom(frame, result, {.texels = 4 * sizeof(float), .sums = add::sums.elementBytes}, false);
+    return taken(frame, result);
+  }
+
+  std::pair<VoxelOctree, Tags> taken(PassContext& frame, VoxelOctree result) const {
+    Tags tags;
+    if (result.bricksAre == Bricks::own) {
+      result.corners =
+          frame.buffer(result.recordRoom * VoxelOctree::kCornersBytes, "octree bricks around nodes");
+    } else {
+      result.nodes = frame.buffer(result.recordRoom * VoxelOctree::kTileBytes, "octree nodes");
+      result.nodes->clear(~0u);
+    }
+    result.bricks = frame.buffer(result.brickRoom * VoxelOctree::kBrickBytes, "octree bricks");
+    result.levels = frame.buffer(VoxelOctree::levelsBytes(result.depth), "octree levels");
+    if (asPublished) return {result, tags};
+    const std::uint64_t words = wordsOf(result);
+    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
+    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes");
+    if (result.bricksAre == Bricks::published) return {result, tags};
+    result.shown = frame.elements(octree_rank::records, words, "ranks of octree nodes that show something");
+    tags.shown = frame.emptyElements(octree_mark::shown, words, "octree nodes that show something");
+    return {result, tags};
+  }
+
+  static std::uint64_t wordsOf(const VoxelOctree& result) { return firstTagWord(result.depth + 1); }
+
+  static void mark(PassContext& frame, const VoxelOctree& result, const VoxelFragments& list,
+                   const Tags& tags, const octree_mark::Variant& variant) {
+    shader::BindingSet bindings{octree_mark::marks({.depth = result.depth,
+                                                    .voxels = static_cast<int>(result.voxels),
+                                                    .own = result.bricksAre == Bricks::own}),
+                                octree_mark::tags(tags.nodes), octree_mark::shown(tags.shown)};
+    if (variant.moving != 0) bindings.add(behindStill(list));
+    forEachFragment(frame, frame.program(variant), bindings, list);
+  }
+
+  static void write(PassContext& frame, VoxelOctree& result, const Tags& tags, const Room& room) {
+    const std::uint64_t words = wordsOf(result), chunks = (words + kChunk - 1) / kChunk;
+    const int wordCount = static_cast<int>(words);
+    const bool own = result.bricksAre == Bricks::own;
+    const gpu::BufferRef counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
+                         records = own ? result.shown
+                                       : frame.elements(octree_rank::records, words, "ranks of octree tiles");
+    const OctreeBinding bound(result);
+    frame.dispatchList(frame.program(octree_count::kProgram),
+                       {octree_count::words({wordCount, own}), octree_count::tags(tags.nodes),
+                        octree_count::shown(tags.shown), octree_count::chunkCounts(counts)},
+                       chunks);
+    frame.dispatch(frame.program(octree_scan::kProgram),
+                   {octree_scan::chunks({static_cast<int>(chunks)}), octree_scan::chunkCounts(counts), bound},
+                   {1, 1, 1});
+    frame.dispatchList(frame.program(octree_rank::kProgram),
+                       {octree_rank::words({wordCount, own}), octree_rank::tags(tags.nodes),
+                        octree_rank::shown(tags.shown), octree_rank::chunkCounts(counts),
+                        octree_rank::records(records), octree_rank::octreeRanks(result.ranks)},
+                       chunks);
+    frame.dispatch(frame.program(octree_arguments::Variant{}),
+                   {octree_arguments::room({room.bricks, room.records, room.leaves}), bound},
+                   {result.depth + 2, 1, 1});
+    frame.dispatchList(
+        frame.program(octree_nodes::Variant{.bricks = own ? octree_nodes::Variant::bricksOwn
+                                                          : octree_nodes::Variant::bricksPublished}),
+        {octree_nodes::nodeRoom({room.bricks, room.records, static_cast<std::uint32_t>(words)}),
+         octree_nodes::records(records), bound},
+        words);
+  }
+
+  /// Depth after depth. Where a depth has too little room the next ones find no nodes: each time that the
+  /// frame is rendered anew one more depth is counted.
+  void subdivide(PassContext& frame, const VoxelOctree& result) {
+    std::vector<std::uint32_t> words(VoxelOctree::levelsBytes(result.depth) / sizeof(std::uint32_t));
+    words[1] = 1;  // the root's tile
+    result.levels->uploadValues(std::span<const std::uint32_t>(words));
+    const std::uint32_t brickRoom = room_.bricks, tileRoom = room_.records;
+    const gpu::BufferRef range = frame.uploaded(std::array<std::uint32_t, 5>{}, "octree nodes of a depth");
+    constexpr std::uint64_t kGroups = 2 * sizeof(std::uint32_t);  // in `range`
+    const OctreeBinding bound(result);
+    for (int depth = 0; depth <= result.depth; ++depth) {
+      forEachFragment(frame, frame.program(octree_tag::kProgram),
+                      {octree_tag::tag({.depth = depth, .voxels = static_cast<int>(result.voxels)}), bound},
+                      *fragments);
+      frame.dispatch(frame.program(octree_range::kProgram),
+                     {octree_range::range({depth, tileRoom}), octree_range::nodeRange(range), bound},
+                     {1, 1, 1});
+      frame.dispatchIndirect(frame.program(octree_subdivide::kProgram),
+                             {octree_subdivide::subdivision({depth, brickRoom, tileRoom}),
+                              octree_subdivide::nodeRange(range), bound},
+                             *range, kGroups);
+    }
+    frame.dispatch(frame.program(octree_arguments::Variant{.published = 1}),
+                   {octree_arguments::room({brickRoom, tileRoom, room_.leaves}), bound},
+                   {result.depth + 2, 1, 1});
+    // The print looks for them before each depth is tagged; here a node holds its place where its neighbours
+    // come to stand until it is subdivided.
+    for (int depth = 0; depth <= result.depth; ++depth)
+      forEachFragment(frame, frame.program(octree_fragment_neighbours::kProgram),
+                      {octree_fragment_neighbours::depth({depth, static_cast<int>(result.voxels)}), bound},
+                      *fragments);
+  }
+
+  static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
+
+  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted; and
+  /// with a sixteenth more where later ones will want more or less, since things move.
+  void judge(PassContext& frame, const VoxelOctree& result, Room& room) const {
+    const std::uint32_t share = &room == &room_ && fragments->still != nullptr ? 16 : 0;
+    for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.records}, {2, &room.leaves}})
+      judge(frame, result.levels, static_cast<std::uint64_t>(word), *wanted, share, true);
+    room.bricksAbove.resize(static_cast<std::size_t>(result.depth) + 1);
+    for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)
+      judge(frame, result.levels, VoxelOctree::kLevelsBegin + VoxelOctree::kLevelWords * depth,
+            room.bricksAbove[depth], 0, false);
+  }
+  static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word, std::uint32_t& room,
+                    std::uint32_t share, bool isRoom) {
+    frame.checkAfterFrame(levels, word * sizeof(std::uint32_t),
+                          [=, &room](PassContext&, std::uint32_t wanted) {
+                            if (wanted <= room) return true;
+                            room = wanted + (share > 0 ? wanted / share : 0);
+                            return !isRoom;
+                          });
+  }
+};
+
+}  // namespace
+
+void addOctree(TechniqueRegistry& registry) {
+  registry.add<OctreePass>("octree", "Nodes of a sparse voxel octree (Crassin et al. 2011, Sec. 4)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing
