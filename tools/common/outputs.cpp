@@ -16,9 +16,10 @@ namespace fs = std::filesystem;
 
 /// Endings that say what a file is, of all that the programs read and write.
 constexpr const char* kEndings[] = {
-    ".exr",  ".png", ".jpg",   ".jpeg",     ".tga",     ".svg",  ".mp4",          ".html",  ".md",  ".csv",
-    ".json", ".vdb", ".scene", ".pipeline", ".sweep",   ".view", ".reproduction", ".obj",   ".mtl", ".gz",
-    ".so",   ".txt", ".db",    ".sqlite",   ".sqlite3", ".glsl", ".comp",         ".blend", ".log", ".xml"};
+    ".exr",          ".png",  ".jpg",  ".jpeg",  ".tga",   ".svg",      ".mp4",   ".html",
+    ".md",           ".csv",  ".json", ".vdb",   ".scene", ".pipeline", ".sweep", ".view",
+    ".reproduction", ".obj",  ".mtl",  ".gz",    ".so",    ".txt",      ".db",    ".sqlite",
+    ".sqlite3",      ".glsl", ".comp", ".blend", ".log",   ".xml",      ".dot",   ".gv"};
 
 /// Whether both names lead to one regular file that is there. Devices take what is written to them, and keep
 /// nothing.
