@@ -14,7 +14,9 @@
 
 namespace lumivox::test {
 
-using namespace implicit_visibility;
+using implicit_visibility::BinMapping, implicit_visibility::DirectionBins, implicit_visibility::BinTable,
+    implicit_visibility::ElementLight, implicit_visibility::ElementLink, implicit_visibility::ElementLinks,
+    implicit_visibility::ElementTree, implicit_visibility::SurfaceElements;
 
 /// One frame of `implicit_visibility_lights`, or of `implicit_visibility` in place of it, and what its passes
 /// made.

@@ -18,7 +18,11 @@
 
 namespace lumivox::test {
 
-using namespace implicit_visibility;
+using implicit_visibility::ElementLight, implicit_visibility::ElementLink, implicit_visibility::ElementLinks,
+    implicit_visibility::ElementLists, implicit_visibility::ElementState, implicit_visibility::ElementTree,
+    implicit_visibility::kNoElement, implicit_visibility::QuadtreeNumbers,
+    implicit_visibility::SurfaceElements, implicit_visibility::BinMapping, implicit_visibility::DirectionBins,
+    implicit_visibility::BinTable;
 
 /// Parameters of one of the passes.
 using Settings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;

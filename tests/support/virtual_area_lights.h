@@ -19,7 +19,9 @@
 
 namespace lumivox::test {
 
-using namespace virtual_area_lights;
+using virtual_area_lights::SparseLight, virtual_area_lights::SurfacePoint, virtual_area_lights::SurfacePoints,
+    virtual_area_lights::SurfacePointSet, virtual_area_lights::SurfacePointState,
+    virtual_area_lights::SurfacePlace;
 
 struct SparsePoint {
   glm::vec3 position{0.0f}, normal{0, 1, 0};
