@@ -2,11 +2,11 @@
 #include <cmath>
 
 #include "experiment/measure.h"
+#include "framework/pipeline_toys.h"
 #include "lumivox/analysis/slopes.h"
 #include "lumivox/base/random.h"
 #include "lumivox/results/json.h"
 #include "lumivox/results/store.h"
-#include "framework/pipeline_toys.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

@@ -7,8 +7,8 @@
 #include "experiment/choice.h"
 #include "experiment/measure.h"
 #include "experiment/turns.h"
-#include "lumivox/analysis/slopes.h"
 #include "framework/pipeline_toys.h"
+#include "lumivox/analysis/slopes.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

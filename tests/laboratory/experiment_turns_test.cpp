@@ -1,7 +1,7 @@
 // The protocol of times: points take turns, and a failure is a point's own.
 #include "experiment/turns.h"
-#include "lumivox/base/error.h"
 #include "framework/pipeline_toys.h"
+#include "lumivox/base/error.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

@@ -96,9 +96,9 @@ double differenceOf(const ImageBuffer& image, const ImageBuffer& reference) {
 }
 
 /// By how much the images of the two drivers differ, as differenceOf().
-/// Zink of Mesa 22.3.6 makes another image of `smoke` by imperfect_volumes_propagation in about one process of
-/// sixty on a busy machine (docs/gpu.md): a difference counts when the second driver makes it twice. The first
-/// driver must make the same bits whenever it is asked.
+/// Zink of Mesa 22.3.6 makes another image of `smoke` by imperfect_volumes_propagation in about one process
+/// of sixty on a busy machine (docs/gpu.md): a difference counts when the second driver makes it twice. The
+/// first driver must make the same bits whenever it is asked.
 double differenceBetween(Drivers& both, const Scene& scene, const Pipeline& pipeline, bool health,
                          double most) {
   const ImageBuffer first = imageBy(*both.first, scene, pipeline, false);

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "lumivox/scene/models.h"
 #include "../../techniques/virtual_area_lights/points/surface_points.h"
+#include "lumivox/scene/models.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 

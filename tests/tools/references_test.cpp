@@ -183,8 +183,8 @@ std::vector<fs::path> citingFiles() {
   std::vector<fs::path> files;
   for (const char* file : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"})
     files.push_back(test::sourceDirectory() / file);
-  for (const char* folder : {"framework", "laboratory", "shaders", "techniques", "templates", "examples", "tools", "tests",
-                             "bench", "docs", "scenes"})
+  for (const char* folder : {"framework", "laboratory", "shaders", "techniques", "templates", "examples",
+                             "tools", "tests", "bench", "docs", "scenes"})
     for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
       if (entry.is_regular_file() && extensions.count(entry.path().extension().string()) != 0 &&
           entry.path().filename() != "references_test.cpp")

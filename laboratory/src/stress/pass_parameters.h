@@ -16,10 +16,10 @@ struct PassParameter {
   double low = 0.0, high = 0.0;  ///< of numbers
   std::vector<std::string> words;
   std::string value;   ///< as the text sets it, or the default
-  bool bound = false;  ///< a parameter of the pipeline stands for it
+  bool bound = false;  ///< a parameter of the pipeline stands for it, or `as_published on` of its pass
 };
 std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
-/// Those that no parameter of the pipeline stands for.
+/// Those that are not bound.
 std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
 
 /// The same text with these parameters of passes set, by "pass.parameter". Error for an unknown pass.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "lumivox/pipeline/port.h"
 #include "element_tree.h"
+#include "lumivox/pipeline/port.h"
 
 namespace lumivox::implicit_visibility {
 

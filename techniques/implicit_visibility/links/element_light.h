@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lumivox/pipeline/port.h"
 #include "../elements/surface_elements.h"
+#include "lumivox/pipeline/port.h"
 
 namespace lumivox::implicit_visibility {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <span>
 
-#include "lumivox/pipeline/port.h"
-#include "direction_bins.h"
 #include "../elements/element_tree.h"
+#include "direction_bins.h"
+#include "lumivox/pipeline/port.h"
 
 namespace lumivox::implicit_visibility {
 

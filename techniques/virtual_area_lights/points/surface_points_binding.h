@@ -6,7 +6,8 @@
 
 namespace lumivox::virtual_area_lights {
 
-/// Points spread over the surfaces, with their look-up grid (shaders/virtual_area_lights/surface_points.glsl).
+/// Points spread over the surfaces, with their look-up grid
+/// (shaders/virtual_area_lights/surface_points.glsl).
 class SurfacePointsBinding : public shader::BindingSet {
  public:
   explicit SurfacePointsBinding(const SurfacePoints& points);
