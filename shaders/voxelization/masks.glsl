@@ -1,7 +1,7 @@
 // Which voxels with holes have their bit set.
 #include "common/random.glsl"
 
-// C++ side: Masks in techniques/voxelization/bit_voxelizer.h.
+// C++ side: Masks in techniques/voxelization/bits/bit_voxelizer.h.
 layout(std140, binding = 1) uniform MaskRule {
   int maskRule;
   uvec2 maskSeed;

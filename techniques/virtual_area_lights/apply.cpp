@@ -2,10 +2,10 @@
 // 3 and 4).
 #include <tuple>
 
-#include "apply_vertices.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "passes.h"
+#include "vertices/apply_vertices.h"
 #include "virtual_area_lights_shaders.h"
 
 namespace lumivox::virtual_area_lights {

@@ -1,5 +1,5 @@
 // The voxels of any voxelizer as an image, to look at.
-#include "bit_voxelizer.h"
+#include "bits/bit_voxelizer.h"
 
 namespace lumivox::voxelization {
 

@@ -1,6 +1,6 @@
 // Directions in the bins of a cube: 6 x N x N of them, aligned with the axes of the world (Dong, Kautz,
-// Theobalt and Seidel 2007, Sec. 4.2.2). shaders/implicit_visibility/direction_bins.glsl has the same for
-// shaders; a test compares them.
+// Theobalt and Seidel 2007, Sec. 4.2.2). shaders/implicit_visibility/links/direction_bins.glsl has the same
+// for shaders; a test compares them.
 #pragma once
 
 #include <cstdint>

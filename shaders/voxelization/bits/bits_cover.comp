@@ -1,0 +1,21 @@
+#version 450
+// The bits of voxels whose fragments cover them together: by the sum of their coverages. One invocation a word.
+#include "common/voxel.glsl"
+#include "../masks.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0) uniform sampler3D opacity;
+layout(binding = 0, r32ui) uniform writeonly uimage3D words;
+
+void main() {
+  ivec3 place = ivec3(gl_GlobalInvocationID), size = textureSize(opacity, 0);
+  if (any(greaterThanEqual(place, imageSize(words)))) return;
+  uint word = 0u;
+  for (int bit = 0; bit < 32 && 32 * place.z + bit < size.z; ++bit) {
+    ivec3 voxel = ivec3(place.xy, 32 * place.z + bit);
+    float covered = texelFetch(opacity, voxel, 0).r;
+    if (covered > 0.0 && isSet(voxel, covered)) word |= 1u << bit;
+  }
+  imageStore(words, place, uvec4(word));
+}

@@ -1,0 +1,27 @@
+// What the passes that light elements and show them have in common.
+#pragma once
+
+#include "../links/element_light.h"
+#include "../links/element_links.h"
+#include "implicit_visibility_shaders.h"
+#include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+
+namespace lumivox::implicit_visibility {
+
+/// Positions and normals of nodes, and what is to be known of them by their numbers (nodes.glsl).
+class NodeBinding : public shader::BindingSet {
+ public:
+  explicit NodeBinding(const SurfaceElements& elements, int bins = 0);
+};
+
+/// What leaves see (links.glsl).
+class LinkBinding : public shader::BindingSet {
+ public:
+  explicit LinkBinding(const ElementLinks& links);
+};
+
+/// A texture of rgba32f with so many texels, zeros: rows of SurfaceElements::kWidth.
+gpu::TextureRef emptyTexels(PassContext& frame, int texels, const std::string& label);
+
+}  // namespace lumivox::implicit_visibility
