@@ -31,7 +31,8 @@ class LightViewPass : public Pass {
 
  protected:
   LightViewPass(int size, ParamRange<int> sizes, int areaSize, ParamRange<int> areaSizes)
-      : size_(this, "size", size, sizes, "texels along a side of the view of a light without extent"),
+      : size_(this, "size", size, sizes,
+              "texels along a side of each view of a point, spot or directional light"),
         areaSamples_(this, "area_samples", 16, within(1, 1024),
                      "point samples that represent all emissive triangles together"),
         areaSize_(this, "area_size", areaSize, areaSizes,
