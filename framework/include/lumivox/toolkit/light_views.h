@@ -23,7 +23,7 @@ struct LightViews {
 /// but emissive triangles.
 LightViews placeLightViews(PassContext& frame, int areaSamples, int size, int areaSize);
 
-/// A pass that draws what the lights see, with the parameters of that.
+/// The base of passes that draw the scene from each light, with their parameters.
 class LightViewPass : public Pass {
  public:
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }

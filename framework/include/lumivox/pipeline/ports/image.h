@@ -7,7 +7,7 @@ namespace lumivox {
 /// An image-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
 struct Image {
   gpu::TextureRef texture;
-  /// False: fractions, counts, colours that stand for something; pictures show them as they are, unexposed.
+  /// False: fractions, counts or colour codes; they are displayed without exposure.
   bool radiance = true;
 };
 

@@ -7,7 +7,7 @@
 
 namespace lumivox {
 
-/// Where in a volume anything is: a list of its occupied bricks, in no order.
+/// The occupied bricks of a volume, unordered.
 struct OccupiedBricks {
   static constexpr int kSide = 4;  ///< finest voxels along a side of a brick
   gpu::BufferRef bricks;           ///< words: i, j, k of each brick, in 10 bits each
@@ -20,11 +20,10 @@ struct OccupiedBricks {
   }
 };
 
-/// A volume that its pass changes where it lies: what of its finest level differs from what the run before
-/// left.
+/// A volume that its pass updates in place: the part of its finest level that differs from the previous run.
 struct ChangedBricks {
-  /// What the coarser levels in the same textures were made by, and from which run. It is held, so that
-  /// nothing else can pass for it.
+  /// The maker of the coarser levels in the same textures, and the run that they are made from. Holding the
+  /// pointer keeps its address unique.
   struct Levels {
     std::shared_ptr<const void> by;
     std::uint64_t number = 0;
@@ -32,8 +31,8 @@ struct ChangedBricks {
   std::shared_ptr<Levels> levels;  ///< those of these textures; null: every run makes the volume anew
   std::uint64_t number = 0;        ///< of the run, one more than that of the run before
   OccupiedBricks bricks;           ///< bricks that are empty by now are among them; null members: all
-  /// Whether `by` made the coarser levels of the run before, so that only what lies above these bricks
-  /// differs. From now on they are those of this run.
+  /// Whether `by` made the coarser levels of the previous run, so that only voxels above these bricks differ.
+  /// Records `by` as the maker for this run.
   bool continues(const std::shared_ptr<const void>& by) const {
     const bool result = levels->by == by && levels->number + 1 == number && bricks.bricks != nullptr;
     *levels = {by, number};
@@ -47,8 +46,8 @@ struct RadianceGrid {
   gpu::TextureRef radiance;
   float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 0;  ///< mip levels that hold values, finest first; 0: all that the texture has
-  /// The meaning of a coarser voxel's opacity: that of the whole voxel, as seen through; or of a path of one
-  /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
+  /// The meaning of a coarser voxel's opacity: across the whole voxel; or along a path of one finest voxel's
+  /// length in it, which the mean of the children gives for a uniform medium.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
   int bounces = 1;          ///< times that the light was reflected
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces

@@ -24,8 +24,8 @@ struct ShGrid {
   std::vector<Level> levels;  ///< finest and smallest first
   Quantity quantity = Quantity::flux;
   float unit = 1.0f;  ///< that the number 1 stands for, in W/sr or W/(sr m^2)
-  /// Whose reading was known before, where only the voxels that it touches hold their values and the others
-  /// are 0: in words of the technique, which whoever reads otherwise must refuse. Empty: all voxels do.
+  /// The one reading whose voxels hold their values, in words of the technique, while all others are 0; a
+  /// pass that reads otherwise must refuse the grid. Empty: all voxels hold their values.
   std::string readFor;
 };
 
