@@ -63,19 +63,18 @@ struct PortTraits<RadianceGrid> {
         "RadianceGrid",
         "outgoing radiance and opacity per voxel, one mip per halving",
         {{"radiance", "d3 rgba16f or rgba32f with mips", "rgb radiance * opacity / unit, a opacity"},
-         {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4, in 10 bits each; or null"},
-         {"count", "buffer", "how many; then indirect dispatches over their voxels; or null"}},
+         {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4 voxels, in 10 bits each; or null"},
+         {"count", "buffer", "number of bricks; then indirect dispatches over their voxels; or null"}},
         {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
          {"opacity", "opacity", "1", PortField::Role::fog}},
         {},
         {radianceUnitCondition(),
          {"filledLevels", "mip levels that hold values, finest first; 0: all that the texture has",
-          "memory that nobody wrote is taken for light", "of coarser levels"},
+          "undefined memory is read as light", "of coarser levels"},
          {"opacity",
-          "whether the opacity of a coarser voxel is that of the whole voxel, or that of a way of one finest "
-          "voxel in it",
-          "coarser voxels hide too much or too little", "of coarser levels"},
-         {"holdsMedia", "whether participating media are in the voxels beside the surfaces",
+          "whether the opacity of a coarser voxel is that across the whole voxel, or along a path of one finest voxel in it",
+          "coarser voxels are too opaque or too transparent", "of coarser levels"},
+         {"holdsMedia", "whether the voxels hold participating media beside the surfaces",
           "media count twice", "that see through media besides"}}};
   }
   static void contents(const RadianceGrid& port, PortContents& contents) {

@@ -39,19 +39,18 @@ struct PortTraits<VoxelFragments> {
         "an unordered list of surface samples, one per triangle and voxel that it touches",
         {{"fragments", "buffer", "array of VoxelFragment in shaders/common/voxel.glsl"},
          {"count", "buffer", "words: fragments written; then x, y, z of an indirect dispatch over them"},
-         {"reflected", "buffer", "a word a fragment: direct light that it is known to reflect; or null"},
-         {"still", "buffer", "as count, of the first fragments, those of what does not move; or null"},
-         {"moving", "buffer", "as count, of those behind them; or null"}},
+         {"reflected", "buffer",
+          "a word for each fragment: direct light that it is known to reflect; or null"},
+         {"still", "buffer", "as count, for the first fragments, which are static; or null"},
+         {"moving", "buffer", "as count, for the moving fragments behind them; or null"}},
         {{"occupancy", "whether a surface touches the voxel", "1"},
          {"fragments", "surface samples in the voxel", "1"}},
-        "voxels with a fragment that covers anything of them",
+        "voxels with a fragment of coverage above 0",
         {{"reflected",
-          "direct light that the first fragments are known to reflect to the side seen, null: of none; kNotKnown "
-          "where a reader lights the fragment itself",
-          "light that a renderer computed is computed again, by other rules", "that light fragments"},
+          "direct light that the first fragments are known to reflect to the visible side; null: known for none; kNotKnown: the reader lights the fragment itself",
+          "light that is already known is computed again, in another way", "that light fragments"},
          {"coverage",
-          "whether the coverages of the fragments in one voxel make its opacity by their mean, or by their sum "
-          "up to 1",
+          "whether the opacity of a voxel is the mean of its fragments' coverages, or their sum up to 1",
           "voxels are too open or too closed", "that make opacities"}}};
   }
   static void contents(const VoxelFragments& port, PortContents& contents) {
