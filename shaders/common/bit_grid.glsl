@@ -7,8 +7,8 @@
 //   BIT_RULE stacks: the same at level 0 alone.
 //   BIT_RULE plain: one voxel after another (Amanatides & Woo 1987).
 //   BIT_RULE printed: thesis 004, Listings 4.39, 4.40 and 4.47, for what they find: see there.
-// No place is computed from t: columns and cells are integers, and all that is compared are crossings of planes. Lengths are in voxels from
-// the corner of voxel (0, 0, 0).
+// No position is computed from t: columns and cells are integers, and only crossings of planes are compared. Lengths are in voxels from the
+// corner of voxel (0, 0, 0).
 #pragma lumivox axis BIT_RULE hierarchy stacks plain printed
 #ifndef LUMIVOX_BIT_GRID
 #define LUMIVOX_BIT_GRID
@@ -35,7 +35,7 @@ float crossingAt(int axis, int plane) { return (float(plane) - bitOrigin[axis]) 
 
 bool isBefore(float t, int axis, float otherT, int otherAxis) { return t < otherT || (t == otherT && axis < otherAxis); }
 
-// The cell along an axis behind a crossing of another one: estimated, and set right by the crossings of its planes.
+// The cell along an axis after a crossing of another axis: estimated from t, then corrected by the crossings of its planes.
 int cellBehind(int axis, float t, int crossedAxis) {
   if (!bitMoves[axis]) return bitStart[axis];
   bool rises = bitDirection[axis] > 0.0;
@@ -50,7 +50,7 @@ int cellBehind(int axis, float t, int crossedAxis) {
 
 bool isInGrid(ivec3 voxel) { return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, bitVoxels)); }
 
-// Where the ray leaves a voxel, or the grid; never where it does not move.
+// The t at which the ray leaves a voxel, or the grid; kNever without motion.
 float leavesVoxel(ivec3 voxel) {
   float t = kNever;
   for (int axis = 0; axis < 3; ++axis)
@@ -154,13 +154,13 @@ layout(std140, binding = 7) uniform Printed {
   int printedSteps;     // most that a ray makes; one that has made them counts as free, as printed
   float printedOffset;  // behind each exit, voxels
 };
-// Listing 4.40: texel (i, j) holds the bits from i to j. It is the XOR of the prefix masks i and j + 1 of Listing 4.39, of which there is no
-// number 128: what a device that guards its reads returns there, 0, is what it takes.
+// Listing 4.40: texel (i, j) holds the bits from i to j, the XOR of the prefix masks i and j + 1 of Listing 4.39. Mask 128 does not exist:
+// a guarded read returns 0 there, which is used.
 layout(binding = 9) uniform usampler2D rayMasks;
 
 // Listing 4.47. A ray is a part of a straight line, from 0 to 1 in its own units, in a cube whose side is a power of two of voxels along x
-// and y and one stack along z. As printed the level grows without a bound: here the coarsest one is read again. Where it is printed with
-// coordinates outside of the texture there is nothing.
+// and y and one stack along z. As printed the level grows without a bound: here the coarsest one is read again. Where it reads outside of
+// the texture, nothing is set.
 BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
   BitHit hit = BitHit(ivec3(-1), kNever, false, 0);
   bitOrigin = origin, bitDirection = direction, bitInverse = 1.0 / direction, bitVoxels = voxels;
@@ -238,7 +238,7 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
     ivec2 behind = mix(low - 1, high, greaterThan(bitDirection.xy, vec2(0.0)));
     voxel = alongX ? ivec3(behind.x, other, next) : ivec3(other, behind.y, next);
     if (any(lessThan(voxel.xy, ivec2(0))) || any(greaterThanEqual(voxel.xy, voxels.xy))) break;
-    // Within the next level's block there was something before.
+    // The next level's block has a set bit.
     if (any(notEqual(voxel.xy >> (level + 1), texel >> 1))) level = min(level + 1, coarsest);
   }
   return hit;

@@ -1,11 +1,11 @@
-// The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxelizer that goes by columns.
+// The fragment of a triangle in the voxels of a column; the same to the bit for every voxelizer that works by columns.
 #ifndef LUMIVOX_COLUMN_SAMPLE
 #define LUMIVOX_COLUMN_SAMPLE
 #include "common/textures.glsl"
 #include "common/triangle.glsl"
 
-// How far inside an edge, in voxels, the sample of a column lies whose middle the triangle does not cover. On the edge itself, where the next
-// surface begins, rounding would decide whether light reaches it.
+// If the triangle does not cover a column's centre, the distance of the sample inside the edge, in voxels. On the edge itself, where the
+// next surface begins, rounding would decide whether light reaches it.
 const float kInset = 1.0 / 64.0;
 
 // Barycentric coordinates in the projection of the point of the triangle nearest to a point, or just inside of it.
@@ -70,7 +70,7 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
   return result;
 }
 
-// The mask leaves nothing of the triangle there.
+// Whether the mask removes all of the triangle there.
 bool isHole(ColumnSample s) { return s.fragment.albedoBCoverage >> 16 == 0u; }
 
 // A point of the triangle in a voxel of the column, from its corner. Where the sample lies in another voxel than this one it goes along the

@@ -22,7 +22,7 @@ vec3 tangentTo(vec3 normal) {
 }
 
 // Cones of equal weight: a spiral over the unit disc, lifted onto the hemisphere (Malley's method), is distributed as the cosine. Each
-// stands for the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle. cosTheta is the cosine
+// represents the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle. cosTheta is the cosine
 // between axis and normal. `place` is where in its stratum of the disc the axis lies: along the square of the radius, 0.5 its middle, and
 // around, a share of a turn.
 vec3 cosineCone(int i, int count, vec2 place, vec3 tangent, vec3 bitangent, vec3 normal, out float cosTheta, out float tanHalfAngle) {

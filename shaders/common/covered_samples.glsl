@@ -1,10 +1,10 @@
-// Coverage of a voxel's sides by samples, as the voxels of 3D clipmaps have it (thesis 004 Sec. 3.5.2).
-// Including files declare before: kMostSamples, sampleCount, samples (x and y inside the pixel, 0..1), thickness (voxels), mostScale (pixels
-// along a voxel, at most); and have common/triangle.glsl.
+// Coverage of a voxel's sides by samples, as in 3D clipmaps (thesis 004 Sec. 3.5.2). Including files declare before: kMostSamples,
+// sampleCount, samples (x and y inside the pixel, 0..1), thickness (voxels), mostScale (pixels along a voxel, at most); and have
+// common/triangle.glsl.
 #ifndef LUMIVOX_COVERED_SAMPLES
 #define LUMIVOX_COVERED_SAMPLES
 
-// The sample that stands for a point of a voxel's side.
+// The bit of the sample nearest to a point of a voxel's side.
 uint nearestSample(vec2 point) {
   int best = 0;
   float least = 1e9;
@@ -36,8 +36,8 @@ uint sideMasks(uint covered, float depths[kMostSamples], float slice, int axis) 
   return uint(across.x) | uint(across.y) << kMostSamples | uint(across.z) << (2 * kMostSamples);
 }
 
-// Adaptive supersampling: a triangle that pixels as large as a voxel would meet with a few samples, or none, gets smaller ones, until it has this
-// many samples or the pixels are the smallest.
+// Adaptive supersampling: the pixels of a triangle that covers few samples are halved until it covers this many samples or the pixels are
+// the smallest.
 const float kEnoughSamples = 16.0;
 
 int scaleOf(mat3 corners) {

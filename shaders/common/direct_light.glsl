@@ -46,7 +46,7 @@ vec3 reflectedLight(ivec2 pixel, vec3 posWorld) {
     // Light from below either plane does not reach the side that is seen.
     if (cosSurface <= 0.0 || dot(geometricNormal, toLight) <= 0.0) continue;
     vec3 irradiance = perpendicular * cosSurface;
-    // A light that does not shine this way needs no visibility: it may be dear.
+    // Visibility may be expensive: it is evaluated only for lights that emit in this direction.
     if (all(lessThanEqual(irradiance, vec3(0.0)))) continue;
     irradiance *= visibleShare(i, light, posWorld, geometricNormal, toLight);
 #if MEDIUM != MEDIUM_NONE

@@ -1,5 +1,5 @@
-// Joint bilateral filters (Kopf, Cohen, Lischinski & Uyttendaele 2007): samples that lie `every` pixels apart are blended with weights that
-// fall with their distance in the image and with how unlike their surface is.
+// Joint bilateral filters (Kopf, Cohen, Lischinski & Uyttendaele 2007): samples `every` pixels apart are blended with weights that fall
+// with their distance in the image and with the dissimilarity of their surface.
 #ifndef LUMIVOX_JOINT_BILATERAL
 #define LUMIVOX_JOINT_BILATERAL
 
@@ -9,8 +9,8 @@ ivec2 firstOfFour(ivec2 pixel, ivec2 every) { return ivec2(floor((vec2(pixel) + 
 // Falls from 1 to `least` at this reach.
 float tent(float away, float reach, float least) { return max(1.0 - away / reach, least); }
 
-// A weighted mean whose weights are exp(-unlike) times another one. Only differences of `unlike` count, since they are taken from the least
-// so far: where no sample is alike the most alike one has nearly all of the weight, however unlike it is.
+// A weighted mean with the weights exp(-unlike) times a given weight. `unlike` is taken relative to its least value so far, so that where
+// no sample is similar, the most similar one has nearly all of the weight.
 struct Blend {
   vec3 sum;
   float weights, least;
@@ -30,8 +30,8 @@ void add(inout Blend blend, vec3 value, float weight, float unlike) {
   blend.weights += weight;
 }
 
-// How unlike a surface is to the one at a position: its distance from the plane there, in units of `tolerance`, squared, and minus the
-// logarithm of the power of the cosine between the normals.
+// Dissimilarity of a surface to that at a position: its squared distance from the plane there, in units of `tolerance`, minus the logarithm
+// of the cosine between the normals to the power.
 float unlikeSurface(vec3 otherPosition, vec3 otherNormal, vec3 position, vec3 normal, float tolerance, float power) {
   const float kLeastCosine = 1e-4;  // turned away from each other
   float off = dot(otherPosition - position, normal) / tolerance;

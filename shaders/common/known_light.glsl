@@ -1,6 +1,6 @@
 // Direct light that fragments are known to reflect, by the side that the camera saw: Mavridis & Papaioannou 2011, Sec. 3.2. Included behind
-// common/fragments.glsl and, where the lights shine on sides of which nothing is known, behind common/two_sided_light.glsl.
-// C++ side: VoxelFragments::reflected in framework/include/lumivox/pipeline/ports/voxel_fragments.h.
+// common/fragments.glsl and, to light the sides without known light, behind common/two_sided_light.glsl. C++ side:
+// VoxelFragments::reflected in framework/include/lumivox/pipeline/ports/voxel_fragments.h.
 #pragma lumivox axis REFLECTED 0 1
 #ifndef LUMIVOX_KNOWN_LIGHT
 #define LUMIVOX_KNOWN_LIGHT
@@ -16,7 +16,7 @@ struct KnownLight {
 };
 const KnownLight kNoLightKnown = KnownLight(false, 0, vec3(0.0));
 
-// With twoSided off backs reflect nothing, also where it is known.
+// With twoSided off backs reflect nothing, even if their light is known.
 KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 #if REFLECTED
   uint word = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
@@ -29,7 +29,7 @@ KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 }
 
 #ifdef LUMIVOX_TWO_SIDED_LIGHT
-// As addArriving, for the sides of which nothing is known.
+// As addArriving, for the sides without known light.
 void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front,
                        inout vec3 back) {
   vec3 ignored = vec3(0.0);

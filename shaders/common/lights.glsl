@@ -20,7 +20,7 @@ struct LightSample {
   float patchRadiusSquared;  // of the patch that an area sample stands for, m^2
 };
 
-// Which part of its light a sample is: one of so many by which an area light is represented, and which together light what it lights.
+// Share of an area light's samples that this one is, 1 over the number of those that light the same surfaces; 1 for other lights.
 float partOfLight(LightSample light) { return light.kind == kLightArea ? light.cosInner : 1.0; }
 
 layout(std430, binding = 5) readonly buffer Lights { LightSample lights[]; };

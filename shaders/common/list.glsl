@@ -1,5 +1,5 @@
-// Items of a list longer than a row of work groups may be. Included after the local size, which is along x alone.
-// C++ side: PassContext::dispatchList() in framework/include/lumivox/pipeline/pass.h.
+// Items of a list that may be longer than a row of work groups. Included after the local size, which is along x alone. C++ side:
+// PassContext::dispatchList() in framework/include/lumivox/pipeline/pass.h.
 #ifndef LUMIVOX_LIST
 #define LUMIVOX_LIST
 

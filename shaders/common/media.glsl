@@ -1,6 +1,5 @@
-// Participating media: where they are, how dense, and the optical depth along rays. C++ side:
-// framework/include/lumivox/toolkit/media.h. Where the includer has an axis MEDIUM whose word `varying` is chosen, there are densities in
-// textures; without it only even media can be asked about their depth.
+// Participating media: their bounds and densities, and the optical depth along rays. C++ side: framework/include/lumivox/toolkit/media.h.
+// With the includer's axis MEDIUM at `varying`, densities are in textures; otherwise depths exist for homogeneous media only.
 #ifndef LUMIVOX_MEDIA
 #define LUMIVOX_MEDIA
 #include "common/lights.glsl"
@@ -44,7 +43,7 @@ vec2 insideMedia(vec3 origin, vec3 direction, float reach) {
   return range;
 }
 
-// Where the light of a sample comes from: the way to it and how long that is.
+// The direction to a light sample, and its distance.
 void wayToLight(LightSample light, vec3 posWorld, out vec3 direction, out float reach) {
   if (light.kind == kLightDirectional) {
     direction = -light.direction;
@@ -64,7 +63,7 @@ layout(binding = 9) uniform sampler3D density1;
 layout(binding = 10) uniform sampler3D density2;
 layout(binding = 11) uniform sampler3D density3;
 
-// Density of a medium that varies.
+// Density of a heterogeneous medium.
 float densityAt(int i, vec3 posWorld) {
   int which = int(media[i].highDensity.w);
   vec3 texcoord = (posWorld - media[i].gridLowVoxel.xyz) / media[i].gridExtent.xyz;
@@ -74,7 +73,7 @@ float densityAt(int i, vec3 posWorld) {
   return textureLod(density3, texcoord, 0.0).r;
 }
 
-// Optical depth of the media that vary, along a ray: midpoint rule, a step a voxel but at most `mostSteps`.
+// Optical depth of the heterogeneous media along a ray: midpoint rule, one step a voxel but at most `mostSteps`.
 vec3 varyingDepth(vec3 origin, vec3 direction, float reach, int mostSteps) {
   vec3 depth = vec3(0.0);
   for (int i = 0; i < mediumCount; ++i) {
@@ -91,7 +90,7 @@ vec3 varyingDepth(vec3 origin, vec3 direction, float reach, int mostSteps) {
 }
 #endif
 
-// Optical depth of the even media along a ray, exact.
+// Optical depth of the homogeneous media along a ray, exact.
 vec3 evenDepth(vec3 origin, vec3 direction, float reach) {
   vec3 depth = vec3(0.0);
   for (int i = 0; i < mediumCount; ++i) {

@@ -10,8 +10,8 @@ struct SurfaceLight {
   vec4 flux;          // rgb reflected flux, W
 };
 
-// Share of what leaves a disc that arrives on each square metre of a surface at posWorld, 1/m^2, without visibility: the form factor of the
-// disc over its area, cos cos / (pi d^2 + area), which is exact on its axis (Lambert) and stays finite where it is near.
+// Share of a disc's flux that arrives on each square metre of a surface at posWorld, 1/m^2, without visibility: the form factor of the disc
+// over its area, cos cos / (pi d^2 + area), which is exact on its axis (Lambert) and stays finite where it is near.
 float sharePerArea(SurfaceLight light, vec3 posWorld, vec3 normal) {
   vec3 path = light.positionArea.xyz - posWorld;
   float distanceSquared = dot(path, path);

@@ -1,4 +1,4 @@
-// Images of samples that lie `every` pixels apart: a texel stands for the pixel in the middle of its block.
+// Images of samples that lie `every` pixels apart: a texel belongs to the pixel in the middle of its block.
 #ifndef LUMIVOX_SAMPLED_PIXELS
 #define LUMIVOX_SAMPLED_PIXELS
 

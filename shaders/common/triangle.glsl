@@ -4,8 +4,8 @@
 #ifndef LUMIVOX_TRIANGLE
 #define LUMIVOX_TRIANGLE
 
-// Rounding of float arithmetic, relative. A corner is placed no better than this times the side of the grid, and an edge is evaluated no better
-// than this times its length; what lies closer than that to touching counts as touching, so that no voxel is lost.
+// Rounding of float arithmetic, relative. A corner is accurate to this times the side of the grid, and an edge to this times its length.
+// Distances below that count as touching, so that no voxel is lost.
 const float kRounding = 3e-7;
 
 vec3 permute(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
@@ -18,9 +18,9 @@ int dominantAxisOf(vec3 a, vec3 b, vec3 c) {
   return normal.x > normal.y && normal.x > normal.z ? 0 : normal.y > normal.z ? 1 : 2;
 }
 
-// Separating axes of the triangle and a voxel (Schwarz & Seidel 2010, Sec. 3.1): three of the box, the plane, nine of the edges. Deviates: an
-// axis holds the interval in which a voxel's centre must project, in place of one oriented half space, so that it does not matter how a sliver
-// happens to be oriented.
+// Separating axes of the triangle and a voxel (Schwarz & Seidel 2010, Sec. 3.1): three of the box, the plane, nine of the edges. Deviates:
+// an axis holds the interval in which a voxel's centre must project, in place of one oriented half space, so that the orientation of a
+// sliver does not matter.
 struct Overlap {
   vec3 origin;              // corner of a voxel near the triangle: all below is relative to it, so that nothing large is subtracted
   ivec3 low, high;          // voxels that its bounds touch, inside the grid

@@ -23,8 +23,8 @@ layout(binding = 1) uniform sampler2D maskTexture;
 bool isHole(vec2 texcoord) { return texture(maskTexture, texcoord).r < kMaskThreshold; }
 #endif
 
-// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the image, but its
-// corners are rounded to steps of the rasteriser, and what it covers then lies anywhere in its plane.
+// Whether this pixel's ray misses the surface. A triangle whose plane contains the eye has no extent in the image, but its corners are
+// rounded to steps of the rasteriser, so that its fragments may lie anywhere in its plane.
 bool isElsewhere(vec3 posWorld) {
   const float kTolerance = 2.0;  // pixels: beyond what rounding moves a triangle that is seen
   // Share of the coordinates below which their rounding leaves no direction.

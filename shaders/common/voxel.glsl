@@ -36,8 +36,8 @@ vec2 unpackSigned(uint word) {
   return max(vec2(steps) / 32767.0, -1.0);
 }
 
-// packHalf2x16 of the nearest half-precision numbers, of two alike the even one. The built-in rounds as the driver likes, and one driver cuts
-// off what was just read from a texture.
+// packHalf2x16 of the nearest half-precision numbers, of two alike the even one. The rounding of the built-in is up to the driver, and one
+// driver truncates values that were just read from a texture.
 uint packHalves(vec2 value) {
   const float kLeastNormal = 1.0 / 16384.0, kStepBelow = 1.0 / 16777216.0;
   uvec2 bits = floatBitsToUint(value);
@@ -75,9 +75,9 @@ vec3 unpackShared(uint word) {
   return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * unit;
 }
 
-// In place of the direct light that a fragment is known to reflect: a reader has to light it (VoxelFragments::kNotKnown).
+// The direct light that the fragment reflects is not known: a reader lights it itself (VoxelFragments::kNotKnown).
 const uint kNotKnown = 0xffffffffu;
-// Bit of VoxelFragment::offset: what the fragment is known to reflect leaves it behind its normal, where the camera saw it.
+// Bit of VoxelFragment::offset: the known light leaves the fragment on the back of its normal, the side that the camera saw.
 const uint kSeenBehind = 1u << 30;
 
 #endif

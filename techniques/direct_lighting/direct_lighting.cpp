@@ -69,12 +69,13 @@ class ShadePass : public Pass {
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only emission is seen"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media between lights and surfaces, which dim the light on its way"};
+                           "media that attenuate light between lights and surfaces"};
   Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
-                         "most steps through a medium that varies, towards a light"};
-  Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
-  Param<bool> areaLights{this, "area_lights", true,
-                         "light of emissive surfaces; off: another pass brings it, and they alone are seen"};
+                         "largest number of steps through a heterogeneous medium towards a light"};
+  Param<bool> shadows{this, "shadows", true, "shadow test; off: light passes through everything"};
+  Param<bool> areaLights{
+      this, "area_lights", true,
+      "light of emissive surfaces on others; off: another pass adds it, and only the emissive surfaces themselves are shown"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
 
@@ -119,7 +120,7 @@ class ComposePass : public Pass {
   In<Image> transmittance{this,
                           "transmittance",
                           Presence::optional,
-                          "what media leave of the light of surfaces on its way to the camera",
+                          "share of the surfaces' light that media transmit to the camera",
                           Needs::nothing,
                           Contributes::nothing};
   In<Image> scattered{

@@ -20,33 +20,32 @@ class SmoothPass : public Pass {
   In<Image> arriving{this,
                      "diffuse",
                      Presence::optional,
-                     "mean radiance that arrives, E / pi, at all pixels or at one of 2 x 2 or of 4 x 4",
+                     "mean arriving radiance, E / pi, at every pixel or at one of each 2 x 2 or 4 x 4",
                      Needs::nothing,
                      Contributes::nothing};
   In<Image> mirrored{this,
                      "glossy",
                      Presence::optional,
-                     "light reflected by the glossy lobe, at as many",
+                     "light reflected by the glossy lobe, at every pixel or at one of each 2 x 2 or 4 x 4",
                      Needs::nothing,
                      Contributes::nothing};
   In<Image> open{this,
                  "occlusion",
                  Presence::optional,
-                 "unoccluded share of the directions, at as many",
+                 "unoccluded share of the directions, at every pixel or at one of each 2 x 2 or 4 x 4",
                  Needs::nothing,
                  Contributes::nothing};
   Param<Kernel> kernel{
       this, "kernel", Kernel::tent,
-      "4 x 4 samples weighted by tents, in one pass; a Gaussian along the rows, then along the columns; or, for comparison, the nearest samples without regard to surfaces"};
+      "tent: 4 x 4 samples weighted by tents, in one pass; gaussian: a Gaussian along the rows, then along the columns; bilinear: the nearest samples, surfaces ignored, for comparison"};
   Param<int> radius{
       this, "radius", 0, within(0, 64),
-      "pixels on either side that are blended; 0: none where every pixel has a sample, else the two "
-      "samples next to it"};
+      "half width of the filter, in pixels; where not every pixel has a sample, at least two samples on either side"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
-      "distance off a pixel's tangent plane, in widths of a sample there, at which a sample counts 1/e"};
+      "distance from the pixel's tangent plane at which a sample has the weight 1/e, in widths of a sample there"};
   Param<float> power{this, "power", 16.0f, within(0.0f, 1000.0f),
-                     "of the cosine between the normals of a pixel and of a sample"};
+                     "exponent of the cosine between the normals of the pixel and of a sample"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::nothing,
@@ -128,8 +127,8 @@ class SmoothPass : public Pass {
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::image_filters;
-  registry.describe("Filters of images with the surfaces in mind",
+  registry.describe("Image filters that respect the borders of surfaces",
                     "Kopf, Cohen, Lischinski & Uyttendaele 2007; Pham & van Vliet 2005");
-  registry.add<SmoothPass>("smooth",
-                           "Samples of some or all pixels, smoothed and brought to all (Kopf et al. 2007)");
+  registry.add<SmoothPass>(
+      "smooth", "Joint bilateral filter and upsampling of samples at some or all pixels (Kopf et al. 2007)");
 }

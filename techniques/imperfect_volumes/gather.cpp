@@ -14,27 +14,27 @@ class GatherPass : public Pass {
   enum class Negative { clip, closure };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<ShGrid> incoming{this, "incoming", Presence::optional, "light that arrives in each voxel, of 'march'",
+  In<ShGrid> incoming{this, "incoming", Presence::optional, "light that arrives in each voxel, from 'march'",
                       Needs::anyLight};
-  In<ShGrid> visibility{this, "visibility", Presence::optional, "how open each voxel is, of 'occlude'"};
+  In<ShGrid> visibility{this, "visibility", Presence::optional, "visibility of each voxel, from 'occlude'"};
   In<OccupancyGrid> opacity{this, "opacity", Presence::optional,
                             "with 'blend free': which voxels are occupied"};
-  In<AttributeGrid> attributes{this, "attributes", Presence::optional,
-                               "with 'blend free': mean normals of the voxels, which tell along an edge what "
-                               "lies before both walls"};
+  In<AttributeGrid> attributes{
+      this, "attributes", Presence::optional,
+      "with 'blend free': mean normals of the voxels, which tell at an edge which voxels lie in front of both walls"};
   Neighbours neighbours{this};
   Param<float> occupied{this, "occupied", 0.0f, within(0.0f, 1.0f),
                         "with 'blend free': coverage above which a voxel is occupied"};
   Param<Negative> negative{
       this, "negative", Negative::clip,
-      "two bands can make irradiance negative: cut off; or keep what the two sides of a surface differ by, and neither below 0"};
+      "irradiance that two bands make negative; clip: set to 0; closure: neither side of a surface below 0, with the same difference between them"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> occlusion{this, "occlusion", Contributes::ambientOcclusion, Needs::triangles,
-                       "irradiance of the openness over pi, within 0 and 1"};
+                       "irradiance of the visibility over pi, clamped to 0..1"};
   Out<Image> clipped{
       this, "clipped", Contributes::nothing, Needs::anyLight,
-      "radiance that two bands made negative, before its correction, as positive values, W/(sr m^2)"};
+      "magnitude of the radiance that two bands made negative, before its correction, W/(sr m^2)"};
 
   Reads readsFrom() const override { return Reads::environment; }
   bool uses(const InBase& input) const override {
@@ -99,7 +99,8 @@ class GatherPass : public Pass {
 
 void addGather(TechniqueRegistry& registry) {
   registry.add<GatherPass>(
-      "gather", "Light and openness at the visible surfaces (Mavridis & Papaioannou 2011, Sec. 3.4)");
+      "gather",
+      "Light and ambient occlusion at the visible surfaces (Mavridis & Papaioannou 2011, Sec. 3.4)");
 }
 
 }  // namespace lumivox::imperfect_volumes

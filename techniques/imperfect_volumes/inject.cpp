@@ -18,11 +18,12 @@ class InjectPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples: the imperfect volume"};
   In<ShadowMap> shadow{
       this, "shadow", Presence::optional,
-      "lights and their visibility; without it the environment shines, and direct light that fragments bring along"};
+      "lights and their visibility; without it only the environment and direct light stored in fragments are injected"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::hemisphere,
-      "into which the lit side of a surface shines: alike over its half space, as a Lambert surface does; or a clamped cosine of the same flux; the paper does not say which"};
-  Param<Precision> precision{this, "precision", Precision::float_, "of the volume: 48 or 24 bytes a voxel"};
+      "radiance of the lit side of a surface; hemisphere: the same over its half space, as of a Lambert surface; cosine: a clamped cosine of the same flux. The paper does not say which"};
+  Param<Precision> precision{this, "precision", Precision::float_,
+                             "numbers in the volume; float: 48 bytes a voxel; half: 24"};
   Out<ShGrid> reflected{this, "reflected", Contributes::nothing, Needs::anyLight,
                         "direct light that the surfaces of each voxel reflect"};
 

@@ -39,27 +39,29 @@ class Marching : public Pass {
       this, "gbuffer", Presence::optional,
       "visible surfaces: rays begin only in the voxels that they read; without them in all voxels"};
   Param<int> rays{this, "rays", 100, within(2, 1 << 20),
-                  "from each voxel over the sphere, in opposite pairs: an odd number counts as the next one"};
-  Param<float> step{this, "step", 1.0f, within(0.01f, 64.0f), "along a ray, in voxels"};
+                  "rays from each voxel over the sphere, in opposite pairs: an odd number is rounded up"};
+  Param<float> step{this, "step", 1.0f, within(0.01f, 64.0f), "step of the ray march, in voxels"};
   Param<float> guard{
       this, "guard", kPublishedGuard, within(0.0f, 2048.0f),
-      "first part of a ray, which meets nothing, in voxels: as published the distance of a voxel's corners"};
+      "length at the start of a ray that hits nothing, in voxels; as published: from a voxel's centre to its corner"};
   Param<Reading> reading{
       this, "reading", Reading::nearest,
-      "of the volume at a step: the voxel there; or all eight around, of which half must be occupied"};
-  Param<Walk> walk{this, "walk", Walk::steps, "a look at every step; or every voxel on the way, by 'bits'"};
+      "look-up at a step; nearest: the voxel there; linear: trilinear between the eight voxels around, occupied from one half on"};
+  Param<Walk> walk{this, "walk", Walk::steps,
+                   "steps: one look-up at each step; exact: every voxel along the ray, by 'bits'"};
   Param<Exit> exit{
       this, "exit", Exit::early,
-      "at the first voxel that is met; or (Sec. 4.1) at the end of the volume, and what lies behind is discarded: the same bits",
+      "where a ray stops; early: at its first hit; branchless: at the end of the volume, and what lies behind the hit is discarded (Sec. 4.1). Both give the same bits",
       published(Exit::branchless)};
-  Param<Directions> directions{this, "directions", Directions::voxel,
-                               "a set of its own for each voxel: noise; or one for all: no noise but bands"};
+  Param<Directions> directions{
+      this, "directions", Directions::voxel,
+      "directions of the rays; voxel: other ones for each voxel, which gives noise; shared: the same for all, which gives bands"};
   Param<float> occupied{
       this, "occupied", 0.0f, within(0.0f, 1.0f),
-      "coverage above which a voxel is occupied; 0 with 'walk exact', whose bits have none"};
-  Param<Cover> cover{this, "cover", Cover::read,
-                     "voxels that rays begin in: with 'gbuffer' those that are read; or all, for who looks "
-                     "at the volume itself"};
+      "coverage above which a voxel is occupied; must be 0 with 'walk exact', since bits hold no coverage"};
+  Param<Cover> cover{
+      this, "cover", Cover::read,
+      "voxels in which rays begin; read: with 'gbuffer', those that 'gather' reads; all: every voxel, for readers of the volume itself"};
   Neighbours neighbours{this};
 
   bool uses(const InBase& input) const override {
@@ -169,17 +171,17 @@ class MarchPass : public Marching {
   enum class Feed { front, own, printed };
 
   In<ShGrid> reflected{this, "reflected", "radiance that the voxels send, of 'inject'"};
-  In<AttributeGrid> attributes{this, "attributes", Presence::optional,
-                               "mean normals and albedos of the voxels; needed but for 'source harmonics' "
-                               "and one bounce"};
+  In<AttributeGrid> attributes{
+      this, "attributes", Presence::optional,
+      "mean normals and albedos of the voxels; needed unless 'source harmonics' and one bounce"};
   Param<Source> source{
       this, "source", Source::surface,
-      "what a ray finds in a voxel: the side of the surface that it sees, exact for a Lambert wall; or two bands, 1/2 + 3/4 cos in place of 1",
+      "radiance of a hit; surface: of the side that the ray sees, exact for a Lambert wall; harmonics: of two bands, 1/2 + 3/4 cos in place of 1",
       published(Source::harmonics)};
-  Param<int> bounces{this, "bounces", 1, within(1, 1024), "times that light was reflected"};
+  Param<int> bounces{this, "bounces", 1, within(1, 1024), "number of reflections of the light"};
   Param<Feed> feed{
       this, "feed", Feed::front,
-      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients; or (Sec. 3.3) two buffers alternate: what arrives in a voxel is what it sends by 'source harmonics', whatever its albedo, and the last one is all that is read",
+      "light that a voxel reflects at the next bounce; front: light that arrives in front of both its sides, as at a surface through its centre; own: light of its own coefficients; printed: two buffers alternate (Sec. 3.3): a voxel sends what arrives in it, by 'source harmonics' and whatever its albedo, and only the last buffer is read",
       published(Feed::printed)};
   Out<ShGrid> incoming{this, "incoming", Contributes::nothing, Needs::anyLight,
                        "radiance that arrives in each voxel from all sides, of all bounces"};
@@ -280,9 +282,10 @@ class OccludePass : public Marching {
       0.0f,
       within(0.0f, 1e9f),
       "m",
-      "within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
-  Out<ShGrid> visibility{this, "visibility", Contributes::nothing, Needs::triangles,
-                         "whether each voxel sees anything within the distance, from all sides: 0, else 1"};
+      "distance within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
+  Out<ShGrid> visibility{
+      this, "visibility", Contributes::nothing, Needs::triangles,
+      "visibility over the directions from each voxel: 0 where a ray hits within 'distance', else 1"};
 
   Reads readsFrom() const override { return Reads::geometry; }
 
@@ -310,7 +313,8 @@ class OccludePass : public Marching {
 void addMarch(TechniqueRegistry& registry) {
   registry.add<MarchPass>(
       "march", "Light that arrives in each voxel, by rays (Mavridis & Papaioannou 2011, Sec. 3.3)");
-  registry.add<OccludePass>("occlude", "How open each voxel is (Mavridis & Papaioannou 2011, Sec. 3.5)");
+  registry.add<OccludePass>(
+      "occlude", "Visibility of each voxel within a distance (Mavridis & Papaioannou 2011, Sec. 3.5)");
 }
 
 }  // namespace lumivox::imperfect_volumes

@@ -49,14 +49,15 @@ void requireSameGrid(const char* input, const GridPlacement& grid, const char* o
 Neighbours::Neighbours(Pass* pass)
     : voxels_(
           pass, "voxels", Voxels::six,
-          "that a surface point reads: the six across the faces of its own, once it is shifted, as in the paper's implementation; the eight around it, as in its Fig. 2; without a shift its own, as on the left of Fig. 3; or what lies there, trilinearly"),
-      filter_(pass, "filter", true,
-              "six or eight: places as far from the shifted point, read trilinearly; off: whole voxels"),
+          "voxels that a shifted surface point reads; six: those across the faces of its voxel, as in the paper's implementation; eight: those around it, as in the paper's Fig. 2; own: its voxel without the shift, as on the left of Fig. 3; trilinear: one trilinear read"),
+      filter_(
+          pass, "filter", true,
+          "with 'voxels six' or 'eight'; on: trilinear reads at the same offsets from the shifted point; off: whole voxels"),
       shift_(pass, "shift", 0.5f, within(0.0f, 8.0f),
-             "of a surface point along its normal before it reads, in voxels"),
+             "distance by which a surface point moves along its normal before it reads, in voxels"),
       blend_(
           pass, "blend", Blend::free,
-          "which neighbours count: only those that are free and open to the surface, where there are any; or all, of which occupied ones are dark",
+          "neighbours that count; all: all of them, occupied ones as dark; free: only free ones with an unoccluded line to the surface, where there are any",
           published(Blend::all)) {}
 
 std::string Neighbours::inWords() const {

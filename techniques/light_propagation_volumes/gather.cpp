@@ -28,35 +28,35 @@ class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
   In<OccludedFaces> faces{this, "faces", Presence::optional,
-                          "the faces that surfaces occlude; needed with 'lookup reachable'"};
+                          "occluded faces; needed with 'lookup reachable'"};
   Param<float> blend{this, "blend", kBlendCells, within(0.5f, 64.0f),
                      "cells over which a grid is blended into the coarser one"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 4.0f),
-                      "of the lookup from the surface along its normal, in cells"};
+                      "distance of the look-up from the surface along its normal, in cells"};
   Param<float> exponent{
       this, "exponent", 1.0f, within(0.1f, 10.0f),
-      "of the radiance before the albedo, an artistic choice (Listing 4.36); 1 conserves energy"};
+      "exponent of the radiance before it is multiplied by the albedo, an artistic choice (Listing 4.36); 1 conserves energy"};
   Param<Negative> negative{
       this, "negative", Negative::closure,
-      "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off",
+      "irradiance that two bands make negative; closure: neither side of a surface below 0, with the same difference between them; clip: set to 0",
       published(Negative::clip)};
   Param<Lookup> lookup{
       this, "lookup", Lookup::reachable,
-      "cells that can be reached from the surface, at the offset; or (Listing 4.35) filtered at the surface whatever lies between, half a cell too low along z",
+      "cells that are read; reachable: those with an open way from the surface, at the offset; filtered: trilinear at the surface, through walls, half a cell too low along z (Listing 4.35)",
       published(Lookup::filtered)};
   Param<Lobe> lobe{
       this, "lobe", Lobe::arriving,
-      "what counts is light that comes in; or (Listing 4.35) the lobe around the normal itself, light per face of a cell",
+      "arriving: light that comes in through the cell; normal: the lobe around the normal itself, as light per face of a cell (Listing 4.35)",
       published(Lobe::normal)};
   Param<Seam> seam{
       this, "seam", Seam::border,
-      "grids are blended before the finer one's border; or (Listing 4.36) from 12/32 to 16/32 of its side around the eye",
+      "where grids are blended; border: before the finer grid's border; radial: from 12/32 to 16/32 of its side around the eye (Listing 4.36)",
       published(Seam::radial)};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> clipped{
       this, "clipped", Contributes::nothing, Needs::nothing,
-      "radiance that two bands made negative, before its correction, as positive values, W/(sr m^2)"};
+      "magnitude of the radiance that two bands made negative, before its correction, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
     const NestedGrids grids = fluxIn(light);
@@ -112,7 +112,7 @@ class ReflectPass : public Pass {
                     "voxels before the border over which the grid fades out"};
   PublishedForm asPublished{
       this,
-      "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye; in place of what crosses the face before a surface, and of fade"};
+      "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye, in place of the light through the face in front of a surface; 'fade' is ignored"};
   Out<RadianceGrid> radiance{this,
                              "radiance",
                              Contributes::nothing,
@@ -174,10 +174,10 @@ class TracePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips", Levels::all};
   Param<float> reach{
-      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "of a cone; 0: the longest side of the grid"};
+      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: the longest side of the grid"};
   Param<Fade> fade{
       this, "fade", Fade::falls,
-      "of samples along a cone: to nothing at its reach; or (Listing 4.37) from nothing at its start; with both the whole reflection falls to nothing half a side of the grid from the eye",
+      "weight of samples along a cone; falls: to 0 at its reach; grows: from 0 at its start (Listing 4.37); none: constant. With falls and grows the whole reflection also fades to 0 at half a side of the grid from the eye",
       published(Fade::grows)};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
                     "indirect light reflected by the glossy lobe, W/(sr m^2)"};
@@ -213,7 +213,8 @@ void addGather(TechniqueRegistry& registry) {
   registry.add<GatherPass>("gather", "Indirect diffuse light at the visible surfaces (thesis Sec. 4.3.5)");
   registry.add<ReflectPass>("reflect",
                             "The reflection grid, lit from the propagated light (thesis Sec. 4.3.4)");
-  registry.add<TracePass>("trace", "Glossy light by one printed cone through it (thesis Sec. 4.3.5)");
+  registry.add<TracePass>("trace",
+                          "Glossy light by one cone through the reflection grid (thesis Sec. 4.3.5)");
 }
 
 }  // namespace lumivox::light_propagation_volumes

@@ -96,18 +96,21 @@ class Inject : public Pass {
   In<VoxelFragments> fragments{this, "fragments",
                                "surface samples; their voxels no larger than the finest cells"};
   Param<int> levels{this, "levels", 2, within(1, 10),
-                    "nested grids, each of twice the size of the one inside"};
+                    "number of nested grids, each twice as large as the one inside it"};
   Param<int> resolution{this, "resolution", 32, within(8, 128), "cells along a side of each grid"};
   Param<float> extent{
-      this, "extent",
-      0.0f, within(0.0f, 1e9f),
-      "m",  "side of the finest grid, around the camera; 0: as large as lets the coarsest hold the scene"};
+      this,
+      "extent",
+      0.0f,
+      within(0.0f, 1e9f),
+      "m",
+      "side of the finest grid, which follows the camera; 0: such that the coarsest grid contains the scene"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::forward,
-      "what a virtual light sends out: nothing backwards, or a clamped cosine, of which two bands let a seventh out at the back",
+      "emission of a virtual light; forward: none backwards; cosine: a clamped cosine, of which two bands send a seventh backwards",
       published(Lobe::cosine)};
   Out<ShGrid> light{this, "light", "virtual point lights, W/sr"};
-  Out<OccludedFaces> faces{this, "faces", "the faces between the cells that surfaces occlude"};
+  Out<OccludedFaces> faces{this, "faces", "shares of the faces between cells that surfaces occlude"};
 
  private:
   /// The faces that surfaces occlude, and how far these were moved.
@@ -173,20 +176,25 @@ class InjectVoxelsPass : public Inject {
 
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only the environment shines"};
-  Param<Albedo> albedo{this, "albedo", Albedo::mean, "of a voxel: their mean, or its most contrasting one",
-                       published(Albedo::contrast)};
-  Param<Normals> normals{this, "normals", Normals::all,
-                         "that a light reaches, or only the one closest to its direction",
-                         published(Normals::closest)};
-  Param<Area> area{this, "area", Area::covered, "of a surface: what it covers, or all of its voxel",
-                   published(Area::whole)};
+  Param<Albedo> albedo{
+      this, "albedo", Albedo::mean,
+      "albedo of a voxel; mean: the mean of its surfaces; contrast: the albedo with the most contrast",
+      published(Albedo::contrast)};
+  Param<Normals> normals{
+      this, "normals", Normals::all,
+      "normals of a voxel that reflect a light; all: all that the light reaches; closest: only the normal closest to the light's direction",
+      published(Normals::closest)};
+  Param<Area> area{
+      this, "area", Area::covered,
+      "area of a surface in its voxel; covered: the part of a face that it covers; whole: a whole face",
+      published(Area::whole)};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off: only on the front", published(false)};
   Param<Voxels> voxels{
       this, "voxels", Voxels::mean,
-      "what a voxel keeps of its surfaces: means, in the cells in front of them; or (Listings 4.26 to 4.31) what wins an atomic maximum in the voxel that they lie in, lit at its centre: then lobe, albedo, normals, area and two_sided are the printed ones too",
+      "what a voxel stores; mean: means of its surfaces, in the cells in front of them; packed: the winners of an atomic maximum in the surfaces' own voxel, lit at its centre (Listings 4.26 to 4.31); lobe, albedo, normals, area and two_sided are then as printed too",
       published(Voxels::packed)};
-  PublishedForm asPublished{this, "no occluded faces: propagate and gather must be as published too"};
+  PublishedForm asPublished{this, "no occluded faces (propagate and gather must be as published too)"};
 
   std::string checkParameters() const override {
     if (resolution > kLargestVoxelGrid)

@@ -25,14 +25,14 @@ struct PortTraits<light_propagation_volumes::OccludedFaces> {
   static PortKind kind() {
     return {
         "OccludedFaces",
-        "the faces between the cells of an ShGrid that surfaces occlude",
+        "the occluded shares of the faces between the cells of an ShGrid",
         {{"occluded", "d3 rgba8, for each level, one voxel larger",
-          "xyz the shares of the faces to the voxels at lower x, y and z that surfaces occlude; or null"},
+          "xyz occluded shares of the faces to the voxels at lower x, y and z; or null"},
          {"moved", "d3 rgba8, for each level, one voxel larger",
-          "of the same faces, as bytes: how far surfaces were moved to lie on them, fourteenths of a voxel: the low four bits of those that look down the axis and truly lie above, the high ones the other way; or null"},
+          "bytes for the same faces: how far surfaces were moved onto them, in fourteenths of a voxel; low four bits: surfaces that face down the axis and lie above; high four bits: the others; or null"},
          {"packed", "buffer, for each level",
-          "five words a voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29): albedo over pi behind its contrast, and for each face of a tetrahedron a normal behind its closeness to it; 0: no surface; or null"}},
-        {{"occluded", "shares of the faces to the voxels at lower x, y and z that surfaces occlude", "1"}}};
+          "five words for each voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29): albedo over pi below its contrast, and for each face of a tetrahedron a normal below its closeness to the face; 0: no surface; or null"}},
+        {{"occluded", "occluded shares of the faces to the voxels at lower x, y and z", "1"}}};
   }
   static void contents(const light_propagation_volumes::OccludedFaces& port, PortContents& contents) {
     for (std::size_t i = 0; i < port.levels.size(); ++i) {

@@ -29,33 +29,33 @@ class PropagatePass : public Pass {
 
   In<ShGrid> injected{this, "light", "virtual point lights"};
   In<OccludedFaces> faces{this, "faces", Presence::optional,
-                          "the faces that surfaces occlude, from the same injection; always needed"};
+                          "occluded faces, from the same injection; always needed"};
   Param<int> iterations{this, "iterations", 64, within(1, 4096),
                         "steps from cell to cell; light that has not arrived then is lost"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::straight,
-      "flux continues in the direction in which it came, or leaves as a clamped cosine around the face",
+      "direction of flux that leaves a cell; straight: that in which it came; cosine: a clamped cosine around the face",
       published(Lobe::cosine)};
   Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
                              "factor of every step; 1 conserves energy"};
   Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
                                   "factor of the occluded share of a face; 0: nothing occludes"};
   Param<Border> border{this, "border", Border::open,
-                       "of the coarsest grid; a mirror loses no light, for checks of energy"};
+                       "border of the coarsest grid; mirror: no light is lost, for checks of energy"};
   Param<Method> method{
       this, "method", Method::folded,
-      "of computing the same; plain: face by face as in Listing 4.32, slow, and the only one of the published transfer and occlusion"};
+      "implementation of a step, with the same result; folded: five numbers for each neighbour, fast; plain: face by face as in Listing 4.32, slow, and the only one for 'transfer published' and 'occlusion normals'"};
   Param<Transfer> transfer{
       this, "transfer", Transfer::conserving,
-      "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration",
+      "flux between cells; conserving: all that leaves a cell arrives; published: a quarter of it arrives, as clamped cosines without negative values, and the cell keeps its light, so that the sum grows to 5/4 and more in every iteration (Listing 4.32)",
       published(Transfer::published)};
   Param<Occlusion> occlusion{
       this, "occlusion", Occlusion::faces,
-      "by the occluded share of faces; or (Listing 4.33) by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed",
+      "faces: by the occluded share of a face; normals: by a lobe around that normal of the sending voxel that is closest to the direction (Listing 4.33), which needs an injection with 'voxels packed'",
       published(Occlusion::normals)};
   Param<Grids> grids{
       this, "grids", Grids::nested,
-      "light comes in from the next coarser grid and from the environment; or every grid is alone",
+      "nested: light enters from the next coarser grid and from the environment; apart: no light enters a grid from outside",
       published(Grids::apart)};
   Out<ShGrid> light{this, "light", "all light that passed each cell, summed over the iterations, W/sr"};
   Out<ShGrid> travelling{this, "travelling", "light that is still on its way after the last iteration, W/sr"};

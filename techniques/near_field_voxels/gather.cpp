@@ -36,41 +36,41 @@ class GatherPass : public Pass {
   enum class Pixels { full, half, quarter };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<BinaryGrid> bits{this, "bits", "where rays end: one bit a voxel"};
+  In<BinaryGrid> bits{this, "bits", "occupied voxels, at which rays end: one bit each"};
   In<ReflectiveShadowMap> map{
       this, "map", Presence::optional,
-      "what the lights see: the light where rays end; without it only the environment "
-      "shines",
-      Needs::anyLight};
+      "what the lights see: the radiance of hits; without it only the environment shines", Needs::anyLight};
   In<RadianceGrid> voxels{this, "voxels", Presence::optional,
-                          "with 'radiance voxels': the light where rays end, of the grid of 'bits'"};
-  Param<int> rays{this, "rays", 32, within(1, 1 << 20), "per pixel, distributed as the cosine"};
+                          "with 'radiance voxels': the radiance of hits, on the grid of 'bits'"};
+  Param<int> rays{this, "rays", 32, within(1, 1 << 20), "rays per pixel, distributed as the cosine"};
   Param<Pixels> pixelsOf{this, "pixels", Pixels::full,
-                         "which of them send rays: all, or one of 2 x 2 or of 4 x 4"};
+                         "pixels that send rays; full: all; half: one of 2 x 2; quarter: one of 4 x 4"};
   RayMethod method{this};
-  Param<Sequence> sequence{this, "sequence", Sequence::r2,
-                           "of directions: the R2 sequence, which frames that accumulate go on with, or "
-                           "Hammersley's points",
-                           published(Sequence::hammersley)};
+  Param<Sequence> sequence{
+      this, "sequence", Sequence::r2,
+      "sequence of directions; r2: the R2 sequence, which accumulated frames continue; hammersley: Hammersley's points",
+      published(Sequence::hammersley)};
   Param<Rotation> rotation{
       this, "rotation", Rotation::hash,
-      "of the sequence: for each pixel by a hash; by a small tile of random numbers; or the same for all",
+      "rotation of the sequence; hash: per pixel, by a hash; tile: by a small tile of random numbers; none: the same for all pixels",
       published(Rotation::tile)};
-  Param<float> spread{this, "spread", 1.0f, within(0.0f, 1.0f),
-                      "largest sine of a ray's angle to the normal, squared: below 1 the lobe narrows"};
+  Param<float> spread{
+      this, "spread", 1.0f, within(0.0f, 1.0f),
+      "square of the largest sine between a ray and the normal; below 1 the lobe is narrower"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 100.0f),
-                      "start of a ray along the geometric normal, in 'offset_unit'"};
+                      "distance of a ray's start along the geometric normal, in units of 'offset_unit'"};
   Param<OffsetUnit> offsetUnit{
       this, "offset_unit", OffsetUnit::plane,
-      "the distance beyond which no voxel lies that the surface's plane touches, and a sixteenth of a voxel; or the diagonal of a voxel",
+      "unit of 'offset'; plane: the distance beyond which no voxel touches the surface's plane, plus a sixteenth of a voxel; diagonal: the diagonal of a voxel",
       published(OffsetUnit::diagonal)};
   Param<float> start{this, "start", 0.0f, within(0.0f, 1000.0f),
-                     "of a ray along its direction, in voxels behind the offset"};
-  Param<float> radius{
-      this, "radius", 0.0f, within(0.0f, 1e9f), "m", "how far light comes from; 0: from all of the grid"};
+                     "distance of a ray's start along its direction, after the offset, in voxels"};
+  Param<float> radius{this, "radius",
+                      0.0f, within(0.0f, 1e9f),
+                      "m",  "largest distance from which light is gathered; 0: the whole grid"};
   Param<Beyond> beyond{
       this, "beyond", Beyond::grid,
-      "what sees the environment: rays that leave the grid within the radius; or all that meet nothing within the radius",
+      "rays that see the environment; grid: those that leave the grid within the radius; radius: all without a hit within the radius",
       published(Beyond::radius)};
   Param<float> occlusionDistance{
       this,
@@ -78,30 +78,32 @@ class GatherPass : public Pass {
       0.0f,
       within(0.0f, 1e9f),
       "m",
-      "within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
-  Param<Radiance> radiance{this, "radiance", Radiance::map,
-                           "of what a ray meets: projected back into 'map', or of its voxel in 'voxels'"};
+      "distance within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
+  Param<Radiance> radiance{
+      this, "radiance", Radiance::map,
+      "radiance of a hit; map: by projection into 'map'; voxels: of its voxel in 'voxels'"};
   Param<HitPoint> hit{
       this, "hit", HitPoint::middle,
-      "the point that is projected back: the middle of the ray's way through the voxel, where it enters it, the voxel's centre, or x and y where it enters and the centre in z",
+      "point of a hit that is projected into 'map'; middle: midway through the voxel along the ray; entry: where the ray enters; centre: the voxel's centre; printed: x and y of the entry, z of the centre",
       published(HitPoint::printed)};
-  Param<int> taps{this, "taps", 1, within(1, 4), "texels of the map for each hit: 1, or 4 bilinearly"};
+  Param<int> taps{this, "taps", 1, within(1, 4),
+                  "texels of the map read for each hit: 1, or 4 with bilinear weights"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(0.0f, kLargestTolerance),
-      "factor on the distance of a texel's surface from the hit at which it still counts; the largest value: at any"};
+      "factor on the largest distance between a hit and its texel's surface at which the texel counts; the largest value: no limit"};
   Param<float> cap{
       this, "cap", 4.0f, within(0.0f, 1000.0f),
-      "most that this distance may be, in diagonals of a voxel (Listing 4.49; Sec. 3.2.3 has no bound, as 0 here)"};
-  Param<bool> front{this, "front", true, "surfaces that look away from the receiver bring nothing"};
+      "bound of this distance, in diagonals of a voxel (Listing 4.49); 0: no bound (Sec. 3.2.3)"};
+  Param<bool> front{this, "front", true, "surfaces that face away from the receiver contribute nothing"};
   PublishedForm asPublished{
       this,
-      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, 'tolerance' on the side of the map's texel alone, before 'cap' and the voxel"};
+      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their errors: the estimator has one factor 1 / pi too many, cosines to the light count from 0.001 on, and 'tolerance' scales only the side of the map's texel, before the bounds by 'cap' and the voxel"};
   Out<Image> arriving{this, "arriving", Contributes::nothing, Needs::anyLight,
-                      "E / pi at the pixels that send rays: mean radiance that arrives, W/(sr m^2)"};
+                      "mean arriving radiance, E / pi, at the pixels that send rays, W/(sr m^2)"};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
                        "unoccluded share of their rays, in the first channel"};
   Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
-                     "in r: texels of the stacks that the rays of a pixel read"};
+                     "in r: texels of the stacks that the pixel's rays read"};
 
   Reads readsFrom() const override {
     return Reads::camera | Reads::environment | Reads::geometry | Reads::history;
@@ -256,7 +258,7 @@ class GatherPass : public Pass {
 void addGather(TechniqueRegistry& registry) {
   registry.add<GatherPass>(
       "gather",
-      "One bounce by rays through bits, bright as reflective shadow maps know (Thiedemann et al. 2011)");
+      "One bounce by rays through bits, with the radiance of hits from reflective shadow maps (Thiedemann et al. 2011)");
 }
 
 }  // namespace lumivox::near_field_voxels

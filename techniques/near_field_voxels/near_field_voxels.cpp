@@ -5,7 +5,7 @@
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::near_field_voxels;
   registry.describe(
-      "Near-field voxels: rays through one bit a voxel, which end at the light of reflective shadow maps",
+      "Near-field voxels: rays through a grid of one bit a voxel, whose hits are lit by reflective shadow maps",
       "Thiedemann et al. 2011; thesis Gomes 2015, Sec. 3.2");
   addGather(registry);
   addProbe(registry);

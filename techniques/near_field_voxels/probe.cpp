@@ -11,11 +11,11 @@ namespace probe = shaders::near_field_voxels::probe;
 class ProbePass : public Pass {
   In<BinaryGrid> bits{this, "bits", "one bit a voxel"};
   In<Image> origins{this, "origins",
-                    "start of a ray in world space, and in w how far it goes, m; below 0: none"};
+                    "start of a ray in world space; w: its length, m, or below 0 for no ray"};
   In<Image> directions{this, "directions", "its direction, of unit length"};
   RayMethod method{this};
   Out<Image> hits{this, "hits", Contributes::nothing, Needs::nothing,
-                  "the voxel that a ray meets first, -1 where it meets none; in w the way to it, m"};
+                  "the first voxel that a ray hits, -1 without a hit; w: distance to it, m"};
   Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
                      "in r: texels of the stacks that were read"};
 
@@ -36,7 +36,7 @@ class ProbePass : public Pass {
 }  // namespace
 
 void addProbe(TechniqueRegistry& registry) {
-  registry.add<ProbePass>("probe", "Rays that are given through bits (thesis Gomes 2015, Sec. 3.2.2)");
+  registry.add<ProbePass>("probe", "Given rays through bits (thesis Gomes 2015, Sec. 3.2.2)");
 }
 
 }  // namespace lumivox::near_field_voxels

@@ -46,14 +46,15 @@ gpu::TextureRef rayMasks(PassContext& frame) {
 RayMethod::RayMethod(Pass* pass)
     : method_(
           pass, "method", Method::hierarchy,
-          "how the first voxel of a ray is found: from coarse texels to fine ones; by the stacks alone; one voxel after another: all find the same one; or as printed (Listings 4.39, 4.40 and 4.47), which misses some",
+          "how a ray finds its first voxel; hierarchy: from coarse texels to fine ones; stacks: by the stacks alone; plain: voxel by voxel; printed: as in Listings 4.39, 4.40 and 4.47, which miss some. The first three find the same voxel",
           published(Method::printed)),
       steps_(
           pass, "printed_steps", 256, within(1, 20000),
-          "with 'method printed': steps after which a ray counts as free; the print leaves them to the user"),
-      behind_(pass, "printed_offset", 0.1f, within(0.0f, 1.0f),
-              "with 'method printed': how far behind each exit the next step begins, in voxels along the "
-              "ray; no number is published") {}
+          "with 'method printed': number of steps after which a ray counts as free; the listing leaves it to the user"),
+      behind_(
+          pass, "printed_offset", 0.1f, within(0.0f, 1.0f),
+          "with 'method printed': distance behind each exit at which the next step begins, in voxels along the ray; no number is published") {
+}
 
 shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits) const {
   const GridPlacement& grid = bits.grid;

@@ -38,19 +38,19 @@ class ChoosePass : public Pass {
 
   Param<Method> method{
       this, "method", Method::flux,
-      "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)",
+      "flux: 'lights' texels in proportion to their flux; stride: every 'stride'-th texel along both axes, with the flux and the area of its square (Lensing & Broll 2013 take all: a stride of 1)",
       published(Method::stride)};
-  Param<int> wanted{this, "lights", 1024, within(1, 1048576), "with 'flux': texels that are taken"};
+  Param<int> wanted{this, "lights", 1024, within(1, 1048576), "with 'flux': number of chosen texels"};
   Param<int> stride{this, "stride", 1, within(1, 4096),
-                    "with 'stride': side of a square of texels that one stands for"};
+                    "with 'stride': side of the square of texels that one light represents"};
   Param<Area> area{
       this, "area", Area::surface,
-      "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)",
+      "area of a light; surface: the surface area that the texel covers; shared: the same, divided among the samples of an area light, which see one surface; facing: the area of a texel that faced the light (Lensing & Broll 2013, Sec. 4.1)",
       published(Area::facing)};
   Param<Order> order{
       this, "order", Order::rows,
-      "with 'flux': in which texels follow each other, so that near ones are seldom taken together; rows: those of each view; patches: squares, of all views that look the same way from an area light"};
-  Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
+      "with 'flux': order of texels in the distribution, in which neighbours are seldom chosen together; rows: rows of each view; patches: squares, over all views of an area light that share a direction"};
+  Out<SurfaceLights> lights{this, "lights", "lights on surfaces, one for each chosen texel or square"};
 
   void run(PassContext& frame) override {
     if (!map.present() || map->lightCount == 0) {
@@ -152,8 +152,8 @@ class ChoosePass : public Pass {
 }  // namespace
 
 void addChoose(TechniqueRegistry& registry) {
-  registry.add<ChoosePass>("choose",
-                           "Texels of the map as lights on surfaces, in proportion to their flux or evenly");
+  registry.add<ChoosePass>(
+      "choose", "Lights on surfaces from texels of the map, chosen in proportion to their flux or evenly");
 }
 
 }  // namespace lumivox::reflective_shadow_maps

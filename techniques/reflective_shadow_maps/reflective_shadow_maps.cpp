@@ -70,23 +70,22 @@ class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<SurfaceLights> lights{
       this, "lights", Presence::optional,
-      "with 'lights': what is gathered from, texels of a map by choose; without it there "
-      "is no indirect light"};
+      "with 'lights': lights to gather from, by choose; without it there is no indirect light"};
   In<ReflectiveShadowMap> map{
       this, "map", Presence::optional,
       "with 'projected' and 'all': what the lights see; without it there is no indirect light"};
   Param<Method> method{
       this, "method", Method::lights,
-      "all of 'lights', or texels of 'map' around the projection of the surface point into each light's view, or all of them: exact and slow",
+      "what is gathered; lights: all of 'lights'; projected: texels of 'map' around the projection of the surface point into each light's view; all: all texels of 'map', exact and slow",
       published(Method::projected)};
   Param<int> samples{this, "samples", 400, within(1, kLoopLimit),
-                     "with 'projected': texels that are gathered, shared among the lights"};
+                     "with 'projected': number of gathered texels, shared among the lights"};
   Param<float> reach{
       this, "reach", 1.0f, within(0.01f, 1.0f),
-      "with 'projected': radius of the pattern as a share of the half turn around a light, or of the width of the view of a directional light, with 'published' of a spot light too"};
+      "with 'projected': radius of the sampling pattern, as a share of the half turn around a light, or of the width of a directional light's view (with 'weights published' of a spot light's view too)"};
   Param<Weights> weights{
       this, "weights", Weights::exact,
-      "with 'projected': weight of a sample by the density of the pattern, or the printed square of its distance over the sum of these squares",
+      "with 'projected': weight of a sample; exact: by the density of the pattern; published: its squared distance over the sum of the squared distances",
       published(Weights::published)};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};

@@ -30,14 +30,14 @@ class ScreenPass : public Pass {
       0.0f,
       within(0.0f, 1e6f),
       "m",
-      "how far from it they lie; 0: as far as the reference looks for what occludes, a tenth of the scene's diagonal"};
+      "largest distance of these points; 0: that within which the reference looks for occluders, a tenth of the scene's diagonal"};
   Param<Surface> surface{
       this, "surface", Surface::plane,
-      "what lies before a point: the tangent plane of what its pixel sees, or the depth of that pixel",
+      "what hides a point; plane: the tangent plane of the surface in its pixel; depth: the depth of that pixel",
       published(Surface::depth)};
   Param<Pixels> pixelsParameter{
       this, "pixels", Pixels::full,
-      "a result for each pixel, for one of 2 x 2 or for one of 4 x 4, which image_filters.smooth brings to all"};
+      "pixels with a result; full: all; half: one of 2 x 2; quarter: one of 4 x 4, which image_filters.smooth upsamples"};
 
   float radiusOf(const PassContext& frame) const {
     if (radius > 0.0f) return radius;
@@ -88,9 +88,10 @@ class SsaoPass : public ScreenPass {
 
   Param<Directions> directions{
       this, "directions", Directions::sphere,
-      "points in the whole ball, of which a plane blocks half, or in its upper half, by the cosine"};
+      "where the points lie; sphere: in the whole ball, half of which a plane blocks; hemisphere: in its upper half, distributed as the cosine"};
   Param<bool> range{this, "range", true,
-                    "leave out what lies farther before the surface point than the radius", published(false)};
+                    "ignore surfaces that lie farther in front of the surface point than the radius",
+                    published(false)};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
                        "unoccluded share of the directions, at the sampled pixels"};
 
@@ -109,14 +110,14 @@ class SsdoPass : public ScreenPass {
   // In the order of their numbers in ssdo.comp.
   enum class Area { solidAngle, published };
 
-  In<Image> direct{this, "direct", "light of the surfaces that block: reflected once", Contributes::direct};
+  In<Image> direct{this, "direct", "direct light reflected by the surfaces that block", Contributes::direct};
   Param<Area> area{
       this, "area", Area::solidAngle,
-      "what a surface that blocks a direction stands for: the direction's solid angle, 2 pi / N, or the area pi r^2 / N",
+      "weight of a surface that blocks a direction; solid_angle: the solid angle of the direction, 2 pi / N; published: the area pi r^2 / N",
       published(Area::published)};
   Out<Image> arriving{
       this, "arriving", Contributes::nothing, Needs::anyLight | Needs::triangles,
-      "mean radiance that arrives, E / pi, at the sampled pixels: image_filters.smooth multiplies it by the albedo"};
+      "mean arriving radiance, E / pi, at the sampled pixels; image_filters.smooth multiplies it by the albedo"};
 
   Reads readsFrom() const override {
     return Reads::camera | Reads::geometry | Reads::environment | Reads::history;
@@ -143,9 +144,11 @@ class SsdoPass : public ScreenPass {
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::screen_space;
-  registry.describe("Ambient occlusion and one bounce from what the camera sees",
+  registry.describe("Ambient occlusion and one bounce from the surfaces that the camera sees",
                     "Mittring 2007; Ritschel, Grosch & Seidel 2009");
-  registry.add<SsaoPass>("ssao", "Share of points around a surface that nothing hides (Mittring 2007)");
+  registry.add<SsaoPass>(
+      "ssao", "Ambient occlusion by the share of points around a surface that nothing hides (Mittring 2007)");
   registry.add<SsdoPass>(
-      "ssdo", "One bounce and the environment by directions in the image (Ritschel, Grosch & Seidel 2009)");
+      "ssdo",
+      "One bounce and the environment by directional occlusion in screen space (Ritschel, Grosch & Seidel 2009)");
 }

@@ -21,22 +21,19 @@ class ApplyPass : public Pass {
   In<SurfacePoints> points{this, "points", "where light was gathered"};
   In<SparseLight> light{this, "light", Presence::optional, "averaged light of the points", Needs::anyLight};
   In<VertexPoints> vertices{this, "vertices", Presence::optional,
-                            "with light at vertices: the points that these refer to, of the pass `vertices`",
+                            "with 'at vertices': the points that vertices refer to, from the pass `vertices`",
                             Needs::anyLight};
   Param<Interpolate> interpolate{
       this, "interpolate", Interpolate::averaged,
-      "of the diffuse lobe; averaged: the points' lights, which the pixel's normal then meets; plain: what the "
-      "points reflect",
+      "what is interpolated for the diffuse lobe; averaged: the points' averaged lights, shaded with the pixel's normal; plain: the light that the points reflect",
       published(Interpolate::averaged)};
   Param<At> at{
       this, "at", At::pixels,
-      "where the nearest points are mixed; pixels: for each one anew; vertices: at those of the meshes, "
-      "and from there through the rasteriser, for meshes finer than the points",
+      "where the nearest points are interpolated; pixels: at each pixel; vertices: at the vertices of the meshes and from there by the rasteriser, for meshes finer than the points",
       published(At::vertices)};
   PublishedForm asPublished{
       this,
-      "Eq. 10 with its squared distance to the averaged place, as normalise must have it too, and of the "
-      "glossy lobe too the mean of the lights' places, in place of their offsets from the points"};
+      "Eq. 10 with its squared distance to the averaged place (normalise must be as published too); for the glossy lobe too, the mean of the lights' places in place of their offsets from the points"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,

@@ -26,20 +26,19 @@ class GatherPass : public Pass {
 
   In<SurfacePoints> points{this, "points", "where light is gathered"};
   In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
-  In<SurfaceLights> moreLights{this, "more_lights", Presence::optional, "more of them, from elsewhere"};
+  In<SurfaceLights> moreLights{this, "more_lights", Presence::optional,
+                               "more virtual area lights, from another pass"};
   Param<Method> method{
       this, "method", Method::shared,
-      "how lights reach the points; cached: 128 in a dispatch, added to the targets; shared: through the "
-      "memory of a work group",
+      "how the sum over lights is computed; cached: 128 lights in a dispatch, added to the targets; shared: through shared memory of a work group",
       published(Method::cached)};
   Param<ExponentLimit> exponentLimit{
       this, "exponent_limit", ExponentLimit::spacing,
-      "of the glossy lobe; spacing: none narrower than what points as far apart as they are still catch; "
-      "none: whatever the exponent",
+      "limit of the glossy exponent; spacing: no lobe narrower than the spacing of points resolves; none: no limit",
       published(ExponentLimit::none)};
-  PublishedForm asPublished{this,
-                            "Eq. 4 with the flux, Eq. 5 at the middle of the disc and without "
-                            "the receiver's cosine, and Sec. 3.3's sphere without the lights' own extent"};
+  PublishedForm asPublished{
+      this,
+      "Eq. 4 with the flux, Eq. 5 at the centre of the disc and without the receiver's cosine, and the sphere of Sec. 3.3 without the lights' own extent"};
   Param<float> factor{this, "factor", 1.0f, within(0.0f, 1e6f),
                       "with 'as_published': c of Eq. 5, which the paper leaves to the user"};
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
@@ -126,7 +125,7 @@ class GatherPass : public Pass {
 void addGather(TechniqueRegistry& registry) {
   registry.add<GatherPass>(
       "gather",
-      "The light of all virtual area lights at sparse points, as one (Lensing & Broll 2013, Sec. 3.2)");
+      "All virtual area lights averaged to one light at each sparse point (Lensing & Broll 2013, Sec. 3.2)");
 }
 
 }  // namespace lumivox::virtual_area_lights

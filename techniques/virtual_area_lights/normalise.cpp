@@ -17,15 +17,16 @@ using namespace shaders::virtual_area_lights;
 
 class NormalisePass : public Pass {
   In<SurfacePoints> points{this, "points", "where light was gathered"};
-  In<SparseLight> gathered{this, "light", "averaged light, of gather"};
+  In<SparseLight> gathered{this, "light", "averaged light, from gather"};
   Param<float> amplification{this, "amplification", 10.0f, within(1.0f, 1e6f),
-                             "most that the division by the cosine of the averaged light may enlarge it"};
+                             "largest factor that the division by the averaged light's cosine may give"};
   PublishedForm asPublished{
       this,
       "without this limit and that of the brightest light, Eq. 11 with its squared distance to the "
       "averaged place"};
-  Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
-                         "averaged light that the local model turns into what is reflected at the point"};
+  Out<SparseLight> light{
+      this, "light", Contributes::nothing, Needs::anyLight,
+      "averaged light that the local model reflects as the sum of the lights at the point"};
 
   bool looksBack_ = true;  ///< whether anything reflects towards the eye
 
@@ -92,7 +93,8 @@ class NormalisePass : public Pass {
 
 void addNormalise(TechniqueRegistry& registry) {
   registry.add<NormalisePass>(
-      "normalise", "Averaged lights as strong as what they stand for (Lensing & Broll 2013, Eq. 11)");
+      "normalise",
+      "Averaged lights scaled to the sum of the lights that they replace (Lensing & Broll 2013, Eq. 11)");
 }
 
 }  // namespace lumivox::virtual_area_lights

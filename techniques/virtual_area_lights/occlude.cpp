@@ -13,16 +13,16 @@ using namespace shaders::virtual_area_lights;
 class OccludePass : public Pass {
   enum class Combine { product, sum, nearest, mask };
 
-  In<SurfacePoints> points{this, "points", "where light was gathered, and the discs that stand before it"};
-  In<SparseLight> unoccluded{this, "light", "averaged light, of normalise"};
-  Param<bool> occlusion{this, "occlusion", true, "off: the light passes as it is"};
-  Param<Combine> combine{this, "combine", Combine::mask,
-                         "how discs hide together; product: each its share of what is left; sum: of all; "
-                         "nearest: the nearest alone; mask: what 64 bits of the light's square say together",
-                         published(Combine::product)};
-  PublishedForm asPublished{this, "the sphere seen by the form factor of a disc"};
+  In<SurfacePoints> points{this, "points", "where light was gathered, and the discs that occlude it"};
+  In<SparseLight> unoccluded{this, "light", "averaged light, from normalise"};
+  Param<bool> occlusion{this, "occlusion", true, "off: the light passes unchanged"};
+  Param<Combine> combine{
+      this, "combine", Combine::mask,
+      "how several discs occlude together; product: each occludes its share of what the others leave; sum: shares add up; nearest: only the nearest disc; mask: the union, by 64 bits over the light's square",
+      published(Combine::product)};
+  PublishedForm asPublished{this, "the sphere counts by the form factor of a disc"};
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
-                         "averaged light without what discs hide of it"};
+                         "averaged light without the part that discs occlude"};
 
   bool uses(const InBase& input) const override { return occlusion || &input != &points; }
 
@@ -60,8 +60,8 @@ class OccludePass : public Pass {
 }  // namespace
 
 void addOcclude(TechniqueRegistry& registry) {
-  registry.add<OccludePass>("occlude",
-                            "Discs of points before the averaged lights (Lensing & Broll 2013, Sec. 3.3)");
+  registry.add<OccludePass>(
+      "occlude", "Occlusion of averaged lights by the discs of points (Lensing & Broll 2013, Sec. 3.3)");
 }
 
 }  // namespace lumivox::virtual_area_lights

@@ -11,9 +11,11 @@ namespace lumivox::virtual_area_lights {
 namespace {
 
 class PointsPass : public Pass {
-  Param<int> points{this, "points", 2048, within(1, 262144), "most points, on both sides of open surfaces"};
-  Param<int> neighbours{this, "neighbours", 8, within(1, 32),
-                        "of how many nearest points the look-up grid tells, anywhere on the surface"};
+  Param<int> points{this, "points", 2048, within(1, 262144),
+                    "largest number of points, on both sides of open surfaces"};
+  Param<int> neighbours{
+      this, "neighbours", 8, within(1, 32),
+      "number of nearest points that the look-up grid lists for every place on the surface"};
   Out<SurfacePoints> result{this, "points", Contributes::nothing, Needs::triangles,
                             "points spread evenly over the surfaces"};
 

@@ -23,12 +23,11 @@ struct PortTraits<virtual_area_lights::SparseLight> {
     constexpr auto kAny = PortResource::Sign::any;
     return {
         "SparseLight",
-        "the light of many small lights as one for each surface point and lobe",
+        "the light of many small lights, averaged to one light for each surface point and lobe",
         {{"diffuse", "d2 rgba32f, a texel a point",
-          "xyz radiance of the averaged light, W/(sr m^2): times the albedo, what the point reflects; once "
-          "normalised, what it reflects divided by the cosine of the averaged light; w radiance of the brightest place that lights it"},
+          "xyz radiance of the averaged light, W/(sr m^2): times the albedo it is the light that the point reflects; once normalised, also divided by the averaged light's cosine; w radiance of the brightest light on the point"},
          {"diffusePosition", "d2 rgba32f, a texel a point",
-          "xyz place of the averaged light, posWorld, m; w radius of the sphere that stands for it, m", kAny},
+          "xyz position of the averaged light, posWorld, m; w radius of its sphere, m", kAny},
          {"glossy", "d2 rgba32f, a texel a point",
           "the same for the Phong lobe towards the camera; w 1 + exponent of the lobe, 0 without one"},
          {"glossyPosition", "d2 rgba32f, a texel a point", "the same for the Phong lobe", kAny}}};

@@ -20,26 +20,28 @@ class MarchAsPublishedPass : public Pass {
 
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media",
-                           "what they go through; of particles the count in a voxel is looked up"};
+                           "media that the rays cross; of particles, the count in a voxel is read"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it nothing is scattered"};
   Param<Resolution> resolution{this, "resolution", Resolution::half,
                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
   Param<int> steps{this, "steps", 32, within(1, 4096),
                    "steps from the camera to the surface, wherever the media are"};
-  Param<Dither> dither{this, "dither", Dither::asPublished,
-                       "the matrix of Listing 4.51 with its entry 0.22, or with 0.25 in its place"};
+  Param<Dither> dither{
+      this, "dither", Dither::asPublished,
+      "dither matrix of Listing 4.51; as_published: with its entry 0.22; bayer: with 0.25 in its place"};
   Param<Cosine> cosine{
       this, "cosine", Cosine::asPublished,
-      "that of Listing 4.52, of the ray's whole way, with half the longest side of the scene for a unit, and the light's position, or of "
-      "unit vectors"};
-  Param<Phase> phase{this, "phase", Phase::asPublished, "the factor (1-g)^2 of Listing 4.53, or (1-g^2)"};
+      "cosine of the scattering angle; as_published: by the whole ray and the light's position, in units of half the scene's longest side (Listing 4.52); unit_vectors: of unit vectors"};
+  Param<Phase> phase{
+      this, "phase", Phase::asPublished,
+      "factor of the phase function; as_published: (1-g)^2 of Listing 4.53; normalised: (1-g^2)"};
   Out<Image> scattered{
       this, "scattered", Contributes::scattered, Needs::medium,
       "mean over the steps of irradiance times the phase function where there is light; with "
       "`half` an image of half the size, to be upsampled"};
   Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
-                           "1: as published media dim nothing; size as above"};
+                           "1, since the published media attenuate nothing; size as above"};
 
   Reads readsFrom() const override { return Reads::camera | Reads::lights | Reads::media; }
   Needs needs() const override { return Needs::medium; }
@@ -90,7 +92,7 @@ class MarchAsPublishedPass : public Pass {
 void addMarchAsPublished(TechniqueRegistry& registry) {
   registry.add<MarchAsPublishedPass>(
       "march_as_published",
-      "The ray march of thesis Listings 4.51 to 4.53 to the letter, its slips included");
+      "The ray march of thesis Listings 4.51 to 4.53 to the letter, its errors included");
 }
 
 }  // namespace lumivox::volumetric_smoke

@@ -20,7 +20,7 @@ constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
 /// Sec. 4.5: the particle system. Table 2 calls it particle update.
 class ParticlesPass : public Pass {
-  Out<Particles> particles{this, "particles", "where the particles of every medium are"};
+  Out<Particles> particles{this, "particles", "positions of the particles of every medium"};
 
   Reads readsFrom() const override { return Reads::time | Reads::media; }
   Needs needs() const override { return Needs::particles; }
@@ -56,15 +56,15 @@ class ParticlesPass : public Pass {
 class InsertPass : public Pass {
   enum class Deposit { clouds, counts };
 
-  In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
+  In<Particles> particles{this, "particles", Presence::optional, "positions of the particles"};
   In<OccupancyGrid> space{this, "space", Presence::optional,
-                          "voxels that are solid: particles share out their mass among the free ones",
+                          "occupied voxels; particles distribute their mass among the free ones",
                           Needs::particles};
   Param<int> resolution{this, "resolution", 64, within(8, kLargestGrid),
                         "voxels along the longest side of the box that encloses all particles of a medium"};
   Param<Deposit> deposit{
       this, "deposit", Deposit::clouds,
-      "a particle as the cloud that it is, or all of it in the one voxel that contains its centre",
+      "clouds: each particle as its cloud; counts: each particle whole, in the voxel of its centre",
       published(Deposit::counts)};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
@@ -156,38 +156,39 @@ class MarchPass : public Pass {
   enum class Phase { normalised, asPublished };
 
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
-  In<ScatteringGrid> media{this, "media", "what they go through"};
+  In<ScatteringGrid> media{this, "media", "media that the rays cross"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it media only dim"};
   Param<Resolution> resolution{this, "resolution", Resolution::half,
                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
   Param<int> steps{this, "steps", 32, within(1, 4096), "steps along a ray's way through the media"};
-  Param<LightDepth> lightDepth{this, "light_depth", LightDepth::volume,
-                               "optical depth between media that vary and the lights: once a frame for a "
-                               "grid of points, or for every step of every ray"};
+  Param<LightDepth> lightDepth{
+      this, "light_depth", LightDepth::volume,
+      "optical depth of heterogeneous media towards the lights; volume: once a frame, at a grid of points; march: at every step of every ray"};
   Param<int> lightResolution{this, "light_resolution", 32, within(4, 256),
-                             "points along each side of that grid, for each light"};
+                             "points along each side of that grid; each light has a grid"};
   Param<int> cells{
       this,
       "cells",
       8,
       within(0, 1024),
-      "cubes between voxels over which densities are integrated exactly, from every place of a step "
-      "towards the eye and towards the lights; 0: looked at once a step",
+      "cubes between voxels over which densities are integrated exactly, from each step towards the eye and towards the lights; 0: one density sample a step",
       published(0)};
-  Param<int> lightSteps{this, "light_steps", 32, within(1, 1024), "most steps of a march towards a light"};
-  Param<Start> start{this, "start", Start::dithered,
-                     "where each step is looked at: another place in neighbouring pixels, or the middle"};
+  Param<int> lightSteps{this, "light_steps", 32, within(1, 1024),
+                        "largest number of steps of a march towards a light"};
+  Param<Start> start{
+      this, "start", Start::dithered,
+      "position of the sample in a step; dithered: different in neighbouring pixels; middle: the middle"};
   Param<Phase> phase{
       this, "phase", Phase::normalised,
-      "Henyey-Greenstein with the factor (1-g^2), or (1-g)^2, with which scattering loses energy",
+      "Henyey-Greenstein phase function; normalised: with the factor (1-g^2); as_published: with (1-g)^2, which loses energy",
       published(Phase::asPublished)};
   Out<Image> scattered{
       this, "scattered", Contributes::scattered, Needs::medium,
       "light that media scatter once to the camera, W/(sr m^2); with `half` an image of half "
       "the size, to be upsampled"};
   Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
-                           "what the media leave of the light behind them; size as above"};
+                           "share of the light behind the media that they transmit; size as above"};
 
   Reads readsFrom() const override { return Reads::camera | Reads::lights; }
   Needs needs() const override { return Needs::medium; }
@@ -255,17 +256,16 @@ class MarchPass : public Pass {
 
 class UpsamplePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "where the pixels' rays end"};
-  In<ScatteringGrid> media{this, "media", "what they go through"};
-  In<Image> scatteredSamples{this, "scattered", "of the march", Contributes::scattered};
-  In<Image> transmittanceSamples{this, "transmittance", "of the march", Contributes::nothing};
+  In<ScatteringGrid> media{this, "media", "media that the rays cross"};
+  In<Image> scatteredSamples{this, "scattered", "from the march", Contributes::scattered};
+  In<Image> transmittanceSamples{this, "transmittance", "from the march", Contributes::nothing};
   Param<float> similarity{
       this, "similarity", 0.05f, within(1e-4f, 10.0f),
-      "difference of the ends of two rays, as a share of their length, from which on they "
-      "are no longer alike"};
+      "relative difference between the lengths of two rays at which a sample's weight falls to 1/16"};
   Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium,
                        "light that media scatter once to the camera, W/(sr m^2)"};
   Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
-                           "what the media leave of the light behind them"};
+                           "share of the light behind the media that they transmit"};
 
   Reads readsFrom() const override { return Reads::camera; }
   Needs needs() const override { return Needs::medium; }

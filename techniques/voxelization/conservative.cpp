@@ -37,10 +37,10 @@ class ConservativePass : public Voxelizer {
 
   Param<Depth> depth{
       this, "depth", Depth::conservative,
-      "voxels along the projection: all that the triangle crosses, or only the one at the pixel's centre"};
+      "voxels along the projection axis; conservative: all that the triangle crosses; centre: only the voxel at the pixel's centre"};
   Param<Method> method{
       this, "method", Method::automatic,
-      "who finds the voxels, which are the same: the rasteriser, a compute shader, or what is faster"};
+      "how the voxels are found; raster: by the rasteriser; compute: by a compute shader; automatic: the faster of the two. All find the same voxels"};
 
   /// Rows of tiles that fit into the list of large triangles; what does not is done without it.
   static constexpr std::uint32_t kRowCapacity = 1u << 17;

@@ -13,7 +13,7 @@ using namespace shaders::voxelization;
 namespace {
 
 class DepthPeelingPass : public Voxelizer {
-  Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
+  Param<int> layers{this, "layers", 64, within(1, 4096), "largest number of layers peeled from one view"};
 
   struct Layer {
     gpu::TextureRef depth, surface, depthInGrid;

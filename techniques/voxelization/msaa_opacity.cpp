@@ -14,17 +14,17 @@ using namespace shaders::voxelization;
 namespace {
 
 class MsaaOpacityPass : public Voxelizer {
-  Param<int> samples{this, "samples", 8, within(2, 8), "per pixel; at most what the device has"};
+  Param<int> samples{this, "samples", 8, within(2, 8),
+                     "samples per pixel, at most as many as the device has"};
   Param<float> thickness{this, "thickness", 0.5f, within(0.0f, 1.0f),
-                         "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+                         "thickness of a surface seen from the side, in voxels; 0: none"};
   Param<int> supersampling{
       this, "supersampling", 1, within(1, 16),
-      "most pixels along a voxel for triangles that few samples meet, so that the coverage of small things does "
-      "not change by leaps as they move; the largest power of two that is no more; 1: none"};
-  Out<OccupancyGrid> opacity{this, "opacity", "of the most opaque side of each voxel"};
-  Out<OccupancyGrid> opacityX{this, "opacity_x", "seen along x"};
-  Out<OccupancyGrid> opacityY{this, "opacity_y", "seen along y"};
-  Out<OccupancyGrid> opacityZ{this, "opacity_z", "seen along z"};
+      "largest number of pixels along a voxel for triangles that few samples hit, so that the coverage of small things changes smoothly as they move; rounded down to a power of two; 1: no supersampling"};
+  Out<OccupancyGrid> opacity{this, "opacity", "opacity of the most opaque side of each voxel"};
+  Out<OccupancyGrid> opacityX{this, "opacity_x", "opacity of a voxel seen along x"};
+  Out<OccupancyGrid> opacityY{this, "opacity_y", "opacity of a voxel seen along y"};
+  Out<OccupancyGrid> opacityZ{this, "opacity_z", "opacity of a voxel seen along z"};
 
  public:
   void run(PassContext& frame) override {

@@ -19,14 +19,14 @@ class PointsPass : public Voxelizer {
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.
   Param<int> points{this, "points", 19, within(1, 65536), "random points on each triangle"};
   Param<bool> adaptive{this, "adaptive", false,
-                       "as many points as the triangle's area asks for, whatever `points` says"};
+                       "number of points in proportion to the triangle's area; `points` is ignored"};
   // A voxel that a plane crosses squarely is missed with probability e^-8 = 3 in 10000.
   Param<float> density{this, "density", 8.0f, within(0.001f, 1000.0f),
-                       "adaptive: points per squared voxel size of area"};
+                       "with 'adaptive': points per squared voxel size of area"};
 
-  Param<Spread> spread{this, "spread", Spread::random,
-                       "random points; or the middles of equal parts of the triangle, of which there are "
-                       "the next square number"};
+  Param<Spread> spread{
+      this, "spread", Spread::random,
+      "random: random points; regular: centres of equal parts of the triangle, their number rounded up to a square"};
 
   // Of one triangle; a grid around a camera may see a small part of a huge one.
   static constexpr int kMostPoints = 1 << 24;

@@ -13,15 +13,15 @@ namespace {
 class ReprojectPass : public GridPass {
   In<GBuffer> gbuffer{this, "gbuffer", "what the camera sees"};
   In<VoxelFragments> base{this, "fragments", Presence::optional,
-                          "voxels to which those that the camera sees are added; the grid is theirs then"};
+                          "voxels to which the visible surface points are added; their grid is used"};
   // Sec. 3.2: the points bring the direct light along that the deferred renderer has computed.
-  In<Image> direct{this,
-                   "direct",
-                   Presence::optional,
-                   "direct light at the visible surfaces: their fragments reflect it, and what injects light "
-                   "need not light them again; without it that lights them like all others",
-                   Needs::nothing,
-                   Contributes::direct};
+  In<Image> direct{
+      this,
+      "direct",
+      Presence::optional,
+      "direct light at the visible surfaces, stored in their fragments, so that injection does not light them again; without it injection lights them like all others",
+      Needs::nothing,
+      Contributes::direct};
   Out<VoxelFragments> fragments{this, "fragments", "surface samples: first those of the input"};
 
   void run(PassContext& frame) override {

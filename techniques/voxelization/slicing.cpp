@@ -12,7 +12,7 @@ namespace {
 
 class SlicingPass : public Voxelizer {
   Param<int> axes{this, "axes", 1, within(1, 3),
-                  "1: slices along z, as published; 3: along all axes, so that no surface is lost"};
+                  "1: slices along z, as published; 3: slices along all axes, so that no surface is missed"};
 
   std::string checkParameters() const override {
     if (axes == 2) return "axes must be 1 or 3";

@@ -11,8 +11,8 @@ class ViewPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "voxels"};
   Param<float> cut{this, "cut",
                    0.0f, within(0.0f, 1e9f),
-                   "m",  "distance before the camera up to which everything is cut away"};
-  Out<Image> image{this, "image", "cubes where the voxels are, not light"};
+                   "m",  "distance in front of the camera up to which voxels are cut away"};
+  Out<Image> image{this, "image", "the voxels as shaded cubes: an image to look at, not light"};
 
   Reads readsFrom() const override { return Reads::camera; }
 
@@ -40,7 +40,7 @@ class ViewPass : public Pass {
 }  // namespace
 
 void addView(TechniqueRegistry& registry) {
-  registry.add<ViewPass>("view", "The voxels of any voxelizer as cubes, to look at");
+  registry.add<ViewPass>("view", "The voxels of any voxelizer, drawn as cubes");
 }
 
 }  // namespace lumivox::voxelization

@@ -76,11 +76,12 @@ class GridPass : public Pass {
 
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
-  Param<Around> around{this, "around", Around::scene,
-                       "the grid contains the whole scene, or moves with the camera by whole voxels"};
+  Param<Around> around{
+      this, "around", Around::scene,
+      "scene: the grid contains the whole scene; camera: the grid follows the camera by whole voxels"};
   Param<float> extent{this, "extent",
                       0.0f, within(0.0f, 1e9f),
-                      "m",  "side of a grid around the camera; needed there, unused else"};
+                      "m",  "side of the grid with 'around camera', where it is required; unused otherwise"};
 };
 
 /// A list of fragments begins with those of static geometry, and what moves is written behind them in every

@@ -74,7 +74,7 @@ TEST_CASE("describe explains a word once where it means the same at several plac
   INFO(text);
   CHECK(contains(text,
                  "camera (in reproduction, reproduction > row, reproduction > curve, reproduction > curve > "
-                 "point, reproduction > panel) of the scene; without it the first a name"));
+                 "point, reproduction > panel) camera of the scene; without it the first a name"));
   std::size_t times = 0;
   for (std::size_t at = text.find("without it the first"); at != std::string::npos;
        at = text.find("without it the first", at + 1))

@@ -62,11 +62,12 @@ bool isChapter(const fs::path& card) {
                   "\n| [" + folder + "](" + folder + "/README.md) | ");
 }
 
-/// A text without what stands from "<!-- reproduced", "<!-- measured" or "<!-- results store" to "<!-- end
-/// -->".
+/// A text without what stands from "<!-- reproduced", "<!-- measured", "<!-- published" or "<!-- results
+/// store" to "<!-- end -->".
 std::string withoutGenerated(std::string text) {
   static const std::string kEnd = "<!-- end -->";
-  for (const std::string begin : {"<!-- reproduced ", "<!-- measured ", "<!-- results store"})
+  for (const std::string begin :
+       {"<!-- reproduced ", "<!-- measured ", "<!-- published ", "<!-- results store"})
     for (std::size_t from = text.find(begin); from != std::string::npos; from = text.find(begin, from)) {
       const std::size_t end = text.find(kEnd, from);
       if (end == std::string::npos) break;
@@ -423,6 +424,29 @@ TEST_CASE("a paper card has at most 2,000 words besides what is generated, and i
     CHECK(contains(readFile(drawing), "<title>"));
   }
   CHECK(chapters >= 5);
+}
+
+TEST_CASE("the cards of a technique have every published value of its parameters in a generated table") {
+  // As `lumivox describe --markdown` prints them: "#### technique.pass", then a row for each parameter.
+  std::istringstream reference(readFile(sourceDirectory() / "docs/reference.md"));
+  static const std::regex heading("^#### (\\w+)\\.\\w+$"),
+      row("^\\| `(\\w+)` \\| parameter \\| [^|]* \\| ([^|]+) \\| .*");
+  std::string text;
+  std::size_t values = 0;
+  for (std::string line; std::getline(reference, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, heading)) {
+      text.clear();
+      for (const fs::path& card : cards())
+        if (contains(card.string(), "/techniques/" + match[1].str() + "/")) text += readFile(card);
+    } else if (std::regex_match(line, match, row)) {
+      INFO(line);
+      CHECK(contains(text, "<!-- published table "));
+      CHECK(contains(text, "\n| `" + match[1].str() + "` | " + match[2].str() + " | "));
+      ++values;
+    }
+  }
+  CHECK(values > 30);
 }
 
 TEST_CASE("what leaving out and standing still save is told apart, each of the times beside it") {

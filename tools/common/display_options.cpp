@@ -52,9 +52,7 @@ std::string exposureNumber(double exposure) {
 void DisplayOptions::addExposureTo(CLI::App& app) {
   app.add_option(
       "--exposure", exposure,
-      "of images that are displayed: EV (radiance is multiplied by 2^EV), or an .exr or .png, whose exposure "
-      "is taken, or auto: in a path-traced view of the scene the log-average luminance of what does not emit "
-      "becomes 0.18 (default: auto)");
+      "exposure of displayed images: EV (radiance is multiplied by 2^EV); or an .exr or .png, for its exposure; or auto: in a path-traced view of the scene, the log-average luminance of surfaces that do not emit becomes 0.18 (default: auto)");
 }
 
 void DisplayOptions::addTo(CLI::App& app) {
@@ -64,7 +62,7 @@ void DisplayOptions::addTo(CLI::App& app) {
 
 void DisplayOptions::addToneTo(CLI::App& app) {
   app.add_option("--tone", tone,
-                 fmt::format("tone curve of images that are displayed: linear, srgb or filmic (default: {})",
+                 fmt::format("tone curve of displayed images: linear, srgb or filmic (default: {})",
                              name(kShownTone)))
       ->check(CLI::IsMember({"linear", "srgb", "filmic"}));
 }

@@ -90,10 +90,10 @@ void addNewCommand(Commands& commands) {
       "technique", "a working technique: C++, shader, paper card, pipeline and test, to be built at once");
   auto name = std::make_shared<std::string>();
   auto in = std::make_shared<fs::path>();
-  technique->add_option("NAME", *name, "of the technique, such as my_paper")->required();
-  technique->add_option("--in", *in,
-                        "the project that it is added to, created where missing (default: the "
-                        "project around the working folder, else a new folder NAME)");
+  technique->add_option("NAME", *name, "name of the technique, such as my_paper")->required();
+  technique->add_option(
+      "--in", *in,
+      "the project to which it is added, made if it is missing (default: the project around the working folder, else a new folder NAME)");
   const GlobalOptions& global = commands.global;
   commands.onChosen(technique, [=, &global] { return newTechniqueCommand(*name, *in, global); });
 }

@@ -87,8 +87,7 @@ void addReferenceCommand(Commands& commands) {
   command
       ->add_option(
           "--bounce-layers", options.bounceLayers,
-          "numbers N of bounces, such as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
-          "up to N of them")
+          "numbers of bounces, such as 1,2,4: for each N, layers bounces_N, bounces_N_diffuse and bounces_N_glossy with up to N bounces")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(1, 1 << 16));
@@ -99,8 +98,7 @@ void addReferenceCommand(Commands& commands) {
                       "width and height in pixels, such as 640x360 (default: the camera's)");
   addLength(
       *command, "--occlusion-distance", options.occlusionDistance,
-      "of ambient occlusion, such as 0.5m; without a unit in metres (default: a tenth of the diagonal of the "
-      "scene's bounds)");
+      "distance for ambient occlusion, such as 0.5m; without a unit in metres (default: a tenth of the diagonal of the scene's bounds)");
   all->display.addTo(*command);
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
   command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");

@@ -401,13 +401,11 @@ void addRenderCommand(Commands& commands) {
   command
       ->add_option(
           "--accumulate", options->accumulate,
-          "N: every image is the last of N frames at its time, and every frame finds what passes left "
-          "in the one before; with --frames from image to image too (default: every frame alone)")
+          "N: every image is the last of N frames at its time, in which passes find their results of the previous frame; with --frames from image to image too (default: every frame alone)")
       ->check(CLI::Range(1, 1 << 20));
   command->add_flag(
       "--check-reads", options->checkReads,
-      "for authors of techniques: make every frame a second time from scratch, and name passes whose "
-      "Reads, Needs or uses() leave out what they depend on");
+      "for authors of techniques: render every frame a second time from scratch, and name passes whose Reads, Needs or uses() lack a dependency");
   command->add_flag("--json", options->json, "print the images' files, times and findings as JSON");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return render(*options, global); });

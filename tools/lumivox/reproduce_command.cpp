@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "common/outputs.h"
+#include "describe_json.h"
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -17,6 +18,7 @@
 #include "lumivox/experiment/reproduce.h"
 #include "lumivox/page/contact_sheet.h"
 #include "lumivox/page/measured_passages.h"
+#include "lumivox/page/published_passages.h"
 #include "lumivox/page/reproduction_page.h"
 #include "measure_options.h"
 #include "results_text.h"
@@ -177,9 +179,22 @@ std::size_t firstDifference(const std::string& one, const std::string& other) {
   return 1 + static_cast<std::size_t>(std::count(one.begin(), place, '\n'));
 }
 
-/// Writes the page of kept results and every passage of the cards and guides that quotes them, or, only
-/// checking, tells where one differs.
-int writeCards(const ReproduceCommand& command) {
+/// Of all techniques that are found.
+std::vector<PublishedParameter> publishedParameters(const GlobalOptions& global) {
+  TechniqueSet techniques = global.techniqueSet();
+  std::vector<PublishedParameter> all;
+  forEachPass(techniques, [&](const Technique& technique, const PassEntry& entry) {
+    const std::unique_ptr<Pass> pass = entry.make();
+    for (const ParamBase* one : pass->parameters())
+      if (const std::string published = one->publishedText(); !published.empty())
+        all.push_back({technique.name, entry.name, one->name(), published, one->defaultText()});
+  });
+  return all;
+}
+
+/// Writes the page of kept results and every generated passage of the cards and guides, or, only checking,
+/// tells where one differs.
+int writeCards(const ReproduceCommand& command, const GlobalOptions& global) {
   const fs::path project = projectFolder(), page = project / "docs/benchmarks/reproductions.md";
   const std::vector<ReproducedResult> results = judged(readReproductions(
       command.record.empty() ? project / "docs/benchmarks/reproductions.json" : command.record));
@@ -193,9 +208,12 @@ int writeCards(const ReproduceCommand& command) {
   const fs::path tables = project / "docs/benchmarks/measured_tables.json";
   const std::vector<MeasuredTable> measured =
       fs::exists(tables) ? readMeasuredTables(tables) : std::vector<MeasuredTable>();
-  for (const fs::path& file : quoting)
+  const std::vector<PublishedParameter> published = publishedParameters(global);
+  for (const fs::path& file : quoting) {
+    const std::string reproduced = withReproducedPassages(readFile(file), file, results);
     texts.emplace_back(
-        file, withMeasuredPassages(withReproducedPassages(readFile(file), file, results), file, measured));
+        file, withPublishedPassages(withMeasuredPassages(reproduced, file, measured), file, published));
+  }
 
   bool good = true;
   const auto complain = [&](const std::string& what) {
@@ -208,8 +226,9 @@ int writeCards(const ReproduceCommand& command) {
     const std::string is = fs::exists(file) ? readFile(file) : std::string();
     if (is == text) continue;
     if (command.check) {
-      complain(fmt::format("{}:{}: this differs from the measurement; lumivox reproduce --cards rewrites it",
-                           file.string(), firstDifference(is, text)));
+      complain(fmt::format(
+          "{}:{}: this differs from the measurement or declaration; lumivox reproduce --cards rewrites it",
+          file.string(), firstDifference(is, text)));
     } else {
       writeFileAtomically(file, text);
       logInformation("{}: written", file.string());
@@ -297,7 +316,7 @@ int reproduce(const ReproduceCommand& command, const GlobalOptions& global) {
   // Cards alone are written, and checked, without measuring anything.
   const bool onlyCards = command.check || (command.cards && command.record.empty() && command.names.empty());
   if (!onlyCards) code = measure(command, global);
-  return command.cards ? std::max(code, writeCards(command)) : code;
+  return command.cards ? std::max(code, writeCards(command, global)) : code;
 }
 
 }  // namespace
@@ -327,8 +346,8 @@ void addReproduceCommand(Commands& commands) {
       "--record", all->record, "a file .json that keeps the results: newly measured ones replace its own");
   auto* cards = command->add_flag(
       "--cards", all->cards,
-      "writes docs/benchmarks/reproductions.md and what cards and guides quote from the kept results; alone, from "
-      "docs/benchmarks/reproductions.json and without measuring");
+      "writes docs/benchmarks/reproductions.md and the generated passages of cards and guides: kept results and published values; "
+      "alone, from docs/benchmarks/reproductions.json and without measuring");
   command->add_flag("--check", all->check, "with --cards: writes nothing, and reports what would change")
       ->needs(cards);
   command->add_option(

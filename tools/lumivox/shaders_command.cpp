@@ -160,7 +160,7 @@ void addShadersCommand(Commands& commands) {
   command->add_option("--print", options->program,
                       "TECHNIQUE/PROGRAM: print a variant of it as GLSL; needs no scene");
   command->add_option("--variant", options->variant,
-                      "of --print: one value per axis, such as 1,0 (default: the first)");
+                      "the variant for --print: one value per axis, such as 1,0 (default: the first)");
   command->add_flag("--keep-everything", options->keepEverything,
                     "the variants that are needed when nothing is left out");
   command->add_flag("--json", options->json, "print JSON");

@@ -163,7 +163,7 @@ void addStressCommand(Commands& commands) {
              NamedText::pipeline);
   command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
   addDuration(*command, "--time-limit", options.timeLimit,
-              "for one cell, such as 90s (default 60s with --quick, else 600s)");
+              "time limit of one cell, such as 90s (default 60s with --quick, else 600s)");
   command
       ->add_option(
           "--workers", options.workers,

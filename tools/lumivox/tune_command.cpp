@@ -138,7 +138,7 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
 void addTuneCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "tune",
-      "finds the technique and parameters with the least error within a time, or the other way round");
+      "finds the technique and parameters with the least error within a frame time, or the least time within an error");
   auto all = std::make_shared<TuneCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
@@ -162,9 +162,10 @@ void addTuneCommand(Commands& commands) {
                     "judge against the technique's own model (one bounce) in place of full transport");
   command->add_option("--evaluations", all->tune.evaluations, "most points to measure (default 60)")
       ->check(CLI::Range(1, 100000));
-  command->add_option("-o,--out", all->output, "writes the best pipeline's text, its parameters as defaults");
+  command->add_option("-o,--out", all->output,
+                      "writes the best pipeline's text, with its parameters as defaults");
   auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");
-  command->add_flag("--csv", all->csv, "print all points that were seen as CSV in place of the table")
+  command->add_flag("--csv", all->csv, "print all examined points as CSV in place of the table")
       ->excludes(json);
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return tuneScene(*all, global); });

@@ -92,9 +92,9 @@ std::vector<PropertySpecification> lookProperties() {
       one("show", PropertyType::name, "the pipeline that is shown, by its name or its file"),
       one("beside", PropertyType::name,
           "a second pipeline, `copy` of the first with values of its own, or `nothing`"),
-      one("swap", PropertyType::flag, "exchanges the two"),
+      one("swap", PropertyType::flag, "exchanges the two pipelines"),
       one("camera", PropertyType::name, "looks through a camera of the scene"),
-      place("eye", "where one looks from, with a free camera"),
+      place("eye", "position of a free camera"),
       place("target", "what a free camera looks at"),
       fieldOfView("the full vertical angle of a free camera"),
       place("move", "right, up and forward, as the camera looks"),
@@ -105,54 +105,54 @@ std::vector<PropertySpecification> lookProperties() {
       between(-kLongest, kLongest,
               measured("time", PropertyType::number, dsl::kTime, "the moment that is shown")),
       one("play", PropertyType::flag, "whether time goes on by itself"),
-      ranged("speed", PropertyType::number, kLeastFactor, kMostFactor, "of time, beside that of the clock"),
+      ranged("speed", PropertyType::number, kLeastFactor, kMostFactor,
+             "speed of time, relative to the clock"),
       between(0, kLongest,
               measured("loop", PropertyType::number, dsl::kTime,
-                       "after which playing begins anew; 0: it goes on")),
-      one("frame", PropertyType::name, "steps back until an object is seen whole, or `all`"),
+                       "time after which playing starts again; 0: it goes on")),
+      one("frame", PropertyType::name, "steps back until an object, or `all`, is visible as a whole"),
       asInScene("camera", "resolution",
-                ranged("size", PropertyType::resolution, 1, kLargestSide, "of the image")),
-      one("output", PropertyType::name, "which output is shown; \"whole image\": the sum of all light"),
+                ranged("size", PropertyType::resolution, 1, kLargestSide, "size of the image")),
+      one("output", PropertyType::name, "the output that is shown; \"whole image\": the sum of all light"),
       one("port", PropertyType::name, "an output of a pass, as PASS.PORT, or `nothing`"),
-      one("texture", PropertyType::name, "which texture of the port"),
+      one("texture", PropertyType::name, "the texture of the port that is shown"),
       one("voxels", PropertyType::name,
           "a field of the port's voxels, drawn as cubes, or `lobes` of its spherical harmonics; `nothing`: a "
           "texture"),
       ranged("above", PropertyType::number, 0, kBrightest,
-             "voxels whose values are not above it are left out"),
-      ranged("see_through", PropertyType::number, 0, 1, "how much of the picture is seen behind voxels"),
+             "voxels are shown only if their value is above it"),
+      ranged("see_through", PropertyType::number, 0, 1, "share of the picture that shows through voxels"),
       chosen("channel", channelWords(), "the components of the texture that are shown"),
-      ranged("level", PropertyType::integer, 0, 32, "which level of the port's texture or voxels"),
-      ranged("slice", PropertyType::integer, 0, 65535, "which slice of a volume, or layer of an array"),
+      ranged("level", PropertyType::integer, 0, 32, "level of the port's texture or voxels"),
+      ranged("slice", PropertyType::integer, 0, 65535, "slice of a volume, or layer of an array"),
       chosen("layout", {"picture", "reference", "split", "side_by_side", "flicker", "error"},
-             "what is shown of picture, second picture, reference and error"),
-      chosen("error_map", {"relative", "flip", "squared"}, "which error is shown"),
+             "arrangement of picture, second picture, reference and error"),
+      chosen("error_map", {"relative", "flip", "squared"}, "the error that is shown"),
       ranged("split", PropertyType::number, 0, 1, "where the picture ends and the reference begins"),
       one("exposure", PropertyType::any,
-          fmt::format("in EV, from {} to {}, or `auto`", -kLargestExposure, kLargestExposure)),
+          fmt::format("exposure in EV, from {} to {}, or `auto`", -kLargestExposure, kLargestExposure)),
       chosen("tone", {"srgb", "linear", "filmic", "false_colour"}, "how radiance becomes colours"),
       ranged("samples", PropertyType::integer, 2, kMostSamples,
-             "per pixel, at which the reference is good enough"),
+             "samples per pixel at which the reference is complete"),
       one("reference", PropertyType::flag, "whether a reference is traced in the background"),
-      ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "of the random numbers of techniques"),
+      ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "seed of the techniques' random numbers"),
       one("keep_everything", PropertyType::flag, "leaves nothing out"),
       one("times", PropertyType::flag, "whether each pass is timed"),
-      one("work", PropertyType::flag, "whether what each pass does and holds is counted"),
+      one("work", PropertyType::flag, "whether the work and the contents of each pass are counted"),
   };
 }
 
 std::vector<PropertySpecification> changeProperties() {
   return {
       one("reset", PropertyType::name,
-          "a parameter back to its default, a part of the scene (\"light NAME\", \"material NAME\", "
-          "\"medium NAME\", \"camera NAME\", \"environment\") to its text, or `all`, or `scene`"),
+          "resets a parameter to its default; a part of the scene (\"light NAME\", \"material NAME\", \"medium NAME\", \"camera NAME\", \"environment\") to its text; or `all`; or `scene`"),
       one("off", PropertyType::name,
           "switches a part of the scene off: \"light NAME\", \"gloss\", \"environment\" ..."),
       one("on", PropertyType::name, "switches it on again"),
       asInScene("environment", "radiance",
                 ranged("environment", PropertyType::oneOrThree, 0, kBrightest, "radiance of the sky")),
-      ranged("undo", PropertyType::integer, 1, 1000, "so many changes"),
-      ranged("redo", PropertyType::integer, 1, 1000, "so many changes"),
+      ranged("undo", PropertyType::integer, 1, 1000, "undoes so many changes"),
+      ranged("redo", PropertyType::integer, 1, 1000, "makes so many undone changes again"),
       one("reload", PropertyType::flag, "reads all texts and libraries again"),
   };
 }
@@ -160,25 +160,24 @@ std::vector<PropertySpecification> changeProperties() {
 std::vector<PropertySpecification> keepProperties() {
   return {
       one("save_image", PropertyType::name, "the picture (.png), or every output (.exr)"),
-      one("save_pipeline", PropertyType::name, "the pipeline's text with the values as they are"),
-      one("save_scene", PropertyType::name,
-          "the scene's text with what was changed in it, and a free camera as `view`"),
-      chosen("answer", {"yes", "no"}, "whether a file that was there already is overwritten"),
-      one("export_grid", PropertyType::name, "the voxels of the port that is shown, a .vdb"),
+      one("save_pipeline", PropertyType::name, "the pipeline's text with the present values"),
+      one("save_scene", PropertyType::name, "the scene's text with all edits, and a free camera as `view`"),
+      chosen("answer", {"yes", "no"}, "whether an existing file is overwritten"),
+      one("export_grid", PropertyType::name, "the voxels of the shown port, a .vdb"),
       one("add_point", PropertyType::name,
-          "measures the pipeline as it is, as `sweep` does, into a results store"),
+          "measures the present pipeline, as `sweep` does, into a results store"),
       one("record", PropertyType::name, "what the panels show, as JSON"),
       one("shot", PropertyType::name, "the window as it is, a .png"),
   };
 }
 
 std::vector<PropertySpecification> windowProperties() {
-  PropertySpecification wait =
-      one("wait", PropertyType::any,
-          fmt::format(
-              "for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and so many samples, 1 to "
-              "{:.0f}; at most a minute",
-              kMostSamples));
+  PropertySpecification wait = one(
+      "wait", PropertyType::any,
+      fmt::format(
+          "waits for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and a number of samples, 1 to "
+          "{:.0f}; at most a minute",
+          kMostSamples));
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),
@@ -186,13 +185,13 @@ std::vector<PropertySpecification> windowProperties() {
       one("panel", PropertyType::name, "opens a panel"),
       ranged("window", PropertyType::resolution, 1, kLargestSide, "size of the window"),
       one("panels", PropertyType::flag, "shows the panels"),
-      ranged("panel_width", PropertyType::number, 120, 4000, "of the panels, in pixels of a scale of 1"),
+      ranged("panel_width", PropertyType::number, 120, 4000, "width of the panels, in pixels at scale 1"),
       ranged("scale", PropertyType::number, 0.25, 8,
-             "as a monitor of so many times the usual density has it"),
+             "scale of the window, as on a monitor of so many times the usual density"),
       one("copy_command", PropertyType::flag, "puts the command that repeats the picture into the clipboard"),
       one("minimise", PropertyType::flag, "puts the window away, or brings it back"),
-      chosen("focus", {"picture", "panels"}, "which of the two the keyboard moves in"),
-      ranged("random", PropertyType::integer, 1, 100000, "so many random actions, by the seed"),
+      chosen("focus", {"picture", "panels"}, "the part that the keyboard controls"),
+      ranged("random", PropertyType::integer, 1, 100000, "performs so many random actions, from the seed"),
       one("quit", PropertyType::flag, "closes the window"),
   };
 }
@@ -222,13 +221,13 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
                          ofMaterial("specular", PropertyType::oneOrThree, 1, "Phong albedo"),
                          ofMaterial("exponent", PropertyType::number, kSharpest, "of the Phong lobe"),
                          ofMaterial("emission", PropertyType::oneOrThree, kBrightest, "radiance")};
-  dsl::BlockSpecification light = block("light", dsl::HeaderUse::required, "another power of a light");
+  dsl::BlockSpecification light = block("light", dsl::HeaderUse::required, "the power of a light");
   PropertySpecification power = ranged("power", PropertyType::oneOrThree, 0, kBrightest,
                                        "irradiance, intensity, or an area light's radiance");
   for (const char* word : {"irradiance", "intensity", "radiance"})
     power = asInScene("light", word, std::move(power));
   light.properties = {std::move(power)};
-  dsl::BlockSpecification medium = block("medium", dsl::HeaderUse::required, "another make of a medium");
+  dsl::BlockSpecification medium = block("medium", dsl::HeaderUse::required, "other values of a medium");
   medium.properties = {
       asInScene(
           "medium", "extinction",
@@ -238,8 +237,7 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
                 ranged("albedo", PropertyType::oneOrThree, 0, 1, "scattering / extinction")),
       asInScene("medium", "anisotropy",
                 ranged("anisotropy", PropertyType::number, -1, 1, "mean cosine of scattering"))};
-  dsl::BlockSpecification camera =
-      block("camera", dsl::HeaderUse::required, "puts a camera of the scene elsewhere");
+  dsl::BlockSpecification camera = block("camera", dsl::HeaderUse::required, "moves a camera of the scene");
   camera.properties = {asInScene("camera", "eye", place("eye", "where it is")),
                        asInScene("camera", "target", place("target", "what it looks at")),
                        fieldOfView("the full vertical angle")};

@@ -64,7 +64,7 @@ void addPort(std::vector<Row>& rows, const Session& session, const std::vector<s
   rows.push_back(number("level", "level", port.level, 0, std::max(0, shown.levels - 1), true, "level {}"));
   if (!shown.brightness.empty()) {
     rows.push_back(number("above", "voxels above", port.above, 0, 1, false, "above {}",
-                          "voxels whose values are not above it are left out"));
+                          "voxels are shown only if their value is above it"));
     rows.push_back(number("see_through", "see through", session.state().seeThrough, 0, 1, false,
                           "see_through {}", "how much of the picture is seen behind the voxels"));
     const auto& brightness = shown.brightness.values();

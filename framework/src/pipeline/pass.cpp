@@ -93,7 +93,7 @@ void InBase::connect(const OutBase* source) {
 }
 
 const PortKind& InVoxels::anyVoxels() {
-  static const PortKind kind{"any voxels", "any kind of port with fields that are exported"};
+  static const PortKind kind{"any voxels", "any kind of port with exported fields"};
   return kind;
 }
 

@@ -179,7 +179,7 @@ BlockSpecification mesh() {
 
 BlockSpecification light() {
   BlockSpecification result =
-      block("light", HeaderUse::optional, "a source of light; emissive materials shine too", {});
+      block("light", HeaderUse::optional, "a light source; emissive materials are light sources too", {});
   result.kinds = {"area", "directional", "point", "spot"};
   const PropertySpecification position =
       Row("position", PropertyType::vector3, "where it is", dsl::kLength).within(kFarthestPlace).required();
@@ -198,10 +198,10 @@ BlockSpecification light() {
             .upTo(kMostLight)
             .required()}},
       {"directional",
-       {direction,
-        Row("irradiance", PropertyType::oneOrThree, "on a plane perpendicular to the light, in W/m^2")
-            .upTo(kMostLight)
-            .required()}},
+       {direction, Row("irradiance", PropertyType::oneOrThree,
+                       "irradiance on a plane perpendicular to the light, in W/m^2")
+                       .upTo(kMostLight)
+                       .required()}},
       {"point", {position, intensity}},
       {"spot",
        {position, direction, intensity,
@@ -213,10 +213,9 @@ BlockSpecification light() {
 BlockSpecification medium() {
   return block(
       "medium", HeaderUse::required,
-      "a participating medium with Henyey-Greenstein scattering: even in a box, of particles, or from a file",
+      "a participating medium with Henyey-Greenstein scattering: homogeneous in a box, of particles, or from a file",
       {Row("extinction", PropertyType::oneOrThree,
-           "extinction coefficient sigma_t: of an even medium; of particles in the middle of one cloud; of a "
-           "file where its density is 1",
+           "extinction coefficient sigma_t; of a homogeneous medium: everywhere; of particles: in the middle of one cloud; of a file: where its density is 1",
            dsl::kInverseLength)
            .upTo(kMostExtinction)
            .required(),
@@ -225,7 +224,7 @@ BlockSpecification medium() {
            .between(-0.999, 0.999)
            .byDefault("0"),
        Row("low", PropertyType::vector3,
-           "lowest corner of the box of an even medium; without both corners it fills the bounds of the scene",
+           "lowest corner of the box of a homogeneous medium; without both corners it fills the bounds of the scene",
            dsl::kLength)
            .within(kFarthestPlace),
        Row("high", PropertyType::vector3, "highest corner of that box", dsl::kLength).within(kFarthestPlace),
@@ -255,16 +254,16 @@ BlockSpecification medium() {
        Row("life", PropertyType::number, "time after which a particle is reborn at the source", dsl::kTime)
            .between(kShortestLife, kLongestLife)
            .byDefault("4"),
-       Row("seed", PropertyType::integer, "of the particles' random numbers")
+       Row("seed", PropertyType::integer, "seed of the particles' random numbers")
            .between(0, kLargestSeed)
            .byDefault("1")});
 }
 
 std::vector<BlockSpecification> makeSpecifications() {
-  BlockSpecification environment =
-      block("environment", HeaderUse::none,
-            "constant radiance from all directions, seen by rays that miss everything",
-            {Row("radiance", PropertyType::oneOrThree, "in W/(sr m^2)").upTo(kMostLight).required()});
+  BlockSpecification environment = block(
+      "environment", HeaderUse::none,
+      "constant radiance from all directions, seen by rays that miss everything",
+      {Row("radiance", PropertyType::oneOrThree, "radiance in W/(sr m^2)").upTo(kMostLight).required()});
   environment.repeatable = false;
   BlockSpecification animate =
       block("animate", HeaderUse::required,

@@ -54,7 +54,7 @@ std::vector<PropertySpecification> setUpProperties() {
       "voxel_bytes (of what `output` holds, for each of its finest voxels that has an opacity)");
   for (const PublishedQuantity quantity : kPublishedQuantities) measures.choices.push_back(name(quantity));
   measures.defaultText = name(PublishedQuantity::time);
-  PropertySpecification time = property("time", PropertyType::number, "of the scene");
+  PropertySpecification time = property("time", PropertyType::number, "time in the scene's animation");
   time.dimension = dsl::kTime;
   time.low = 0.0;
   time.high = kLongestTime;
@@ -68,16 +68,15 @@ std::vector<PropertySpecification> setUpProperties() {
   return {
       property("scene", PropertyType::text, "file of the scene, beside the text"),
       property("pipeline", PropertyType::text, "file of the pipeline, beside the text"),
-      property("camera", PropertyType::name, "of the scene; without it the first"),
+      property("camera", PropertyType::name, "camera of the scene; without it the first"),
       time,
       subdivisions,
       measures,
       property("passes", PropertyType::list,
-               "whose times or bytes are added up; without them the whole frame"),
+               "passes whose times or bytes are added up; without them the whole frame"),
       property(
           "output", PropertyType::output,
-          "an output that is kept, for passes that no image needs; whose fragments or bytes are counted; whose image "
-          "a panel shows, in place of the pipeline's whole image"),
+          "an output that is kept alive, for passes that no image needs; its fragments or bytes are counted, or a panel shows its image in place of the pipeline's whole image"),
       property("absent", PropertyType::text, "why nothing can be measured or shown here: not comparable"),
       property("substitute", PropertyType::text,
                "the stand-in for a published set-up that is unknown or unavailable: measured, but not "
@@ -155,15 +154,14 @@ BlockSpecification panelSpecification() {
 PropertySpecification claimedQuantity() {
   PropertySpecification quantity = property(
       "of", PropertyType::word,
-      "what is compared: luminance, the mean; colour, the mean difference of the largest and the smallest channel over "
-      "the mean luminance; detail, the mean difference of neighbouring pixels over it");
+      "the compared quantity; luminance: the mean; colour: the mean difference of the largest and the smallest channel over the mean luminance; detail: the mean difference of neighbouring pixels over the mean luminance");
   for (const ClaimedQuantity one : kClaimedQuantities) quantity.choices.push_back(name(one));
   quantity.defaultText = name(ClaimedQuantity::luminance);
   return quantity;
 }
 
 BlockSpecification claimSpecification() {
-  PropertySpecification times = property("times", PropertyType::number, "how many times `than` counts");
+  PropertySpecification times = property("times", PropertyType::number, "factor on the quantity of `than`");
   times.low = 1e-9;
   times.high = 1e9;
   times.defaultText = "1";
@@ -171,13 +169,13 @@ BlockSpecification claimSpecification() {
   claim.word = "claim";
   claim.name = dsl::HeaderUse::required;
   claim.meaning =
-      "`claim \"SENTENCE\" { ... }`: what the paper says of the images, held against the panels: one has less of something than another";
+      "`claim \"SENTENCE\" { ... }`: a statement of the paper about its images, tested on the panels: one has less of a quantity than another";
   claim.properties = {
       required(property("less", PropertyType::text, "the panel that has less")),
       required(property("than", PropertyType::text, "the panel that has more")), claimedQuantity(), times,
-      property("dark_in", PropertyType::text,
-               "a panel: only the quarter of the pixels is compared that is darkest in it, where light "
-               "that leaks is seen")};
+      property(
+          "dark_in", PropertyType::text,
+          "a panel; only the quarter of the pixels that is darkest in it is compared, where leaking light shows")};
   return claim;
 }
 
@@ -207,20 +205,21 @@ BlockSpecification makeSpecification() {
   softwareScale.defaultText = "1";
   PropertySpecification differs = property(
       "differs", PropertyType::text,
-      "how the set-up differs from the published one, or what is not known of it, without changing the verdict");
+      "a difference of the set-up from the published one, or something unknown about it; it does not change the verdict");
   differs.repeatable = true;
   PropertySpecification columns =
-      property("columns", PropertyType::integer, "of the sheet of panels; without it as square as possible");
+      property("columns", PropertyType::integer,
+               "columns of the sheet of panels; without it the sheet is as square as possible");
   columns.low = 1;
   columns.high = 64;
   result.properties = {
       required(property("title", PropertyType::text, "what the table or figure shows")),
       required(property("paper", PropertyType::text, "authors, year, number of the table or figure")),
-      property("device", PropertyType::text, "on which the published numbers were measured"),
+      property("device", PropertyType::text, "device on which the published numbers were measured"),
       image,
       picture,
       property("scaled", PropertyType::list,
-               "parameters that a reduced set-up makes smaller with the image: voxels along a side"),
+               "parameters that a reduced set-up reduces with the image, such as voxels along a side"),
       softwareScale,
       differs,
       columns};

@@ -13,13 +13,14 @@ ElementWords::ElementWords(Pass* pass)
               "atlas: elements of one size on each object, whatever its triangles; vertices: one for each "
               "loaded vertex",
               published(Source::vertices)),
-      segments_(pass, "segments", Segments::charts,
-                "what a tree stands on; charts: connected pieces within 45 degrees; uv: islands of the "
-                "texture coordinates",
-                published(Segments::uv)),
-      elements_(pass, "elements", 4096, within(16, 1048576), "about how many leaves, with source atlas"),
+      segments_(
+          pass, "segments", Segments::charts,
+          "pieces of surface that have a tree each; charts: connected pieces whose normals lie within 45 degrees; uv: islands of the texture coordinates",
+          published(Segments::uv)),
+      elements_(pass, "elements", 4096, within(16, 1048576),
+                "approximate number of leaves, with 'source atlas'"),
       share_(pass, "share", 0.5f, within(0.0f, 1.0f),
-             "an object's part of the elements goes by this power of its area") {}
+             "exponent of an object's area in its share of the elements") {}
 
 gpu::TextureRef elementTexture(PassContext& frame, std::vector<glm::vec4> values, const std::string& label) {
   const glm::ivec2 size = SurfaceElements::sizeFor(static_cast<int>(values.size()));
@@ -87,7 +88,7 @@ ElementHierarchy ElementWords::made(PassContext& frame) const {
 void addHierarchy(TechniqueRegistry& registry) {
   registry.add<HierarchyPass>(
       "hierarchy",
-      "Quadtrees of surface elements, made once (Dong et al. 2007, Sec. 4.1), where they are timed apart");
+      "Quadtrees of surface elements, made once, as a pass of its own that is timed apart (Dong et al. 2007, Sec. 4.1)");
 }
 
 }  // namespace lumivox::implicit_visibility

@@ -40,7 +40,7 @@ template <>
 struct PortTraits<implicit_visibility::ElementHierarchy> {
   static PortKind kind() {
     return {"ElementHierarchy",
-            "trees of surface elements and what they reflect, without the places where they are",
+            "trees of surface elements with their materials, without positions",
             {{"albedo", "d2 rgba32f, a texel a node", "as of SurfaceElements"},
              {"specular", "d2 rgba32f, a texel a node", "as of SurfaceElements; or null"},
              {"emission", "d2 rgba32f, a texel a node", "as of SurfaceElements; or null"},

@@ -8,11 +8,12 @@ namespace {
 class ElementsPass : public Pass {
   In<ElementHierarchy> hierarchy{
       this, "hierarchy", Presence::optional,
-      "trees that the pass `hierarchy` made: 'source', 'segments', 'elements' and 'share' have no say then"};
+      "trees that the pass `hierarchy` made; 'source', 'segments', 'elements' and 'share' are then ignored"};
   ElementWords words{this};
-  Param<Areas> areas{this, "areas", Areas::now,
-                     "now: areas follow stretching; rest: they stay those of the scene at rest",
-                     published(Areas::rest)};
+  Param<Areas> areas{
+      this, "areas", Areas::now,
+      "areas of elements on deforming meshes; now: as stretched; rest: as in the scene at rest",
+      published(Areas::rest)};
   Out<SurfaceElements> result{this, "elements", "the surface as discs, and trees of them"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials; }

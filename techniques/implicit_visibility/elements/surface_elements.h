@@ -33,7 +33,7 @@ struct PortTraits<implicit_visibility::SurfaceElements> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     return {"SurfaceElements",
-            "the surface as discs, and trees of discs above them, on both sides of the border to the device",
+            "the surface as discs, and trees of discs above them, on the host and on the device",
             {{"position", "d2 rgba32f, a texel a node", "xyz mean position, m; w area, m^2", kAny},
              {"normal", "d2 rgba32f, a texel a node",
               "discs: xyz mean normal, w radius, m; groups: xyz area shown along x, y, z, m^2, w radius, m",

@@ -30,25 +30,22 @@ class DisplayPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is lit"};
   In<ElementLinks> links{
       this, "links", Presence::optional,
-      "what leaves see, of push_links: for 'glossy', 'occlusion' and the glossy part of 'direct'"};
+      "visible elements of each leaf, from push_links: for 'glossy', 'occlusion' and the glossy part of 'direct'"};
   In<ElementLight> light{this, "light", Presence::optional,
-                         "light at elements, of illuminate: for 'diffuse', 'glossy' and 'direct'"};
+                         "light at elements, from illuminate: for 'diffuse', 'glossy' and 'direct'"};
   In<Image> directImage{this,
                         "direct",
                         Presence::optional,
-                        "direct light without what comes by links, for 'direct'",
+                        "direct light other than over links, for 'direct'",
                         Needs::nothing,
                         Contributes::direct};
   Param<Interpolate> interpolate{
       this, "interpolate", Interpolate::neighbours,
-      "which elements a pixel shows; neighbours: those around what is seen there; vertices: those at the "
-      "corners of its triangle, with 'source vertices' alone. What a lobe at pixels sees is always that of "
-      "neighbours",
+      "elements that a pixel interpolates; neighbours: those around the visible point; vertices: those at the corners of its triangle, only with 'source vertices'. A Phong lobe at pixels always uses neighbours",
       published(Interpolate::vertices)};
   Param<Lobe> lobe{
       this, "lobe", Lobe::pixel,
-      "where the Phong lobe is held against the bins; pixel: with the normal and material of what is "
-      "seen; element: with those of elements",
+      "where the Phong lobe is integrated over the bins; pixel: with the normal and material of the visible surface; element: with those of elements",
       published(Lobe::element)};
   Param<float> distance{
       this,
@@ -56,16 +53,16 @@ class DisplayPass : public Pass {
       0.0f,
       within(0.0f, 1e9f),
       "m",
-      "of 'occlusion': within which elements occlude; 0: a tenth of the diagonal of the scene's "
-      "bounds, as in the reference"};
+      "distance within which elements occlude, for 'occlusion'; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
                     "indirect light reflected by the Phong lobe, W/(sr m^2)"};
   Out<Image> direct{this, "direct", Contributes::direct, Needs::nothing,
-                    "'direct' and the light of surfaces that shine over links, W/(sr m^2)"};
-  Out<Image> occlusion{this, "occlusion", Contributes::ambientOcclusion, Needs::triangles,
-                       "share of the projected solid angle in whose bins nothing is nearer than 'distance'"};
+                    "the input 'direct' plus light of emissive surfaces over links, W/(sr m^2)"};
+  Out<Image> occlusion{
+      this, "occlusion", Contributes::ambientOcclusion, Needs::triangles,
+      "share of the projected solid angle whose bins hold no element nearer than 'distance'"};
   Out<Image> segments{this, "segments", Contributes::nothing, Needs::triangles,
                       "a colour for each segment (Fig. 3a)"};
 
@@ -217,7 +214,7 @@ class DisplayPass : public Pass {
 void addDisplay(TechniqueRegistry& registry) {
   registry.add<DisplayPass>(
       "display",
-      "Light at elements as the camera sees it, and what they show of visibility (Dong et al. 2007, Sec. 4.3.1)");
+      "Light of elements at the visible surfaces, and ambient occlusion by links (Dong et al. 2007, Sec. 4.3.1)");
 }
 
 }  // namespace lumivox::implicit_visibility

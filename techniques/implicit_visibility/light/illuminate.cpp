@@ -42,37 +42,35 @@ class IlluminatePass : public Pass {
   enum class AreaLight { shadow, links };
 
   In<SurfaceElements> elements{this, "elements", "what is lit"};
-  In<ElementLinks> links{this, "links", "what leaves see, of push_links"};
+  In<ElementLinks> links{this, "links", "visible elements of each leaf, from push_links"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional, "lights and their visibility", Needs::anyLight};
-  Param<int> bounces{this, "bounces", 1, within(1, 4096),
-                     "times that light is reflected before the surface that is seen, or comes from the "
-                     "environment"};
-  Param<Weight> weight{this, "weight", Weight::bin,
-                       "of a link; bin: the projected solid angle of its bin, those of a side being pi; "
-                       "element: A cos cos / r^2 of the element",
-                       published(Weight::element)};
-  Param<AreaLight> areaLight{this, "area_light", AreaLight::shadow,
-                             "what brings the light of surfaces that shine; shadow: samples with shadow "
-                             "maps; links: links to elements that shine",
-                             published(AreaLight::links)};
+  Param<int> bounces{
+      this, "bounces", 1, within(1, 4096),
+      "number of reflections before the visible surface; light from the environment counts as the first"};
+  Param<Weight> weight{
+      this, "weight", Weight::bin,
+      "weight of a link; bin: the projected solid angle of its bin, pi for all bins of a side; element: A cos cos / r^2 of the element",
+      published(Weight::element)};
+  Param<AreaLight> areaLight{
+      this, "area_light", AreaLight::shadow,
+      "transport of light from emissive surfaces; shadow: point samples with shadow maps; links: links to emissive elements",
+      published(AreaLight::links)};
   Param<int> lightSamples{
       this,
       "light_samples",
       4,
       within(1, 32),
-      "points along a side of an element at which lights and their visibility are asked for",
+      "points along a side of an element at which direct light and its visibility are evaluated",
       published(1)};
   Param<bool> lightLists{
       this, "light_lists", true,
-      "with 'area_light links': only links to what shines are looked at; off: all: the same "
-      "bits"};
+      "with 'area_light links': visit only links to emissive elements; off: visit all links, with the same bits"};
   Param<int> directions{
       this,
       "directions",
       4,
       within(0, 16),
-      "along a side of a face of the cube of directions in which glossy elements pass on what "
-      "their Phong lobes reflect; 0: they pass on diffuse light alone, as in published results (Sec. 5)",
+      "directions along a side of a face of the cube into which glossy elements reflect light by their Phong lobes; 0: they reflect diffuse light alone, as in the published results (Sec. 5)",
       published(0)};
   Out<ElementLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                           "light at elements, on both sides"};

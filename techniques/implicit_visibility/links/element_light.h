@@ -39,13 +39,13 @@ struct PortTraits<implicit_visibility::ElementLight> {
   static PortKind kind() {
     return {
         "ElementLight",
-        "light that arrives at surface elements and leaves them, on both sides",
+        "light that arrives at surface elements and light that leaves them, on both sides",
         {{"irradiance", "d2 rgba32f, two texels a leaf",
-          "xyz irradiance of the front, then of the back, by what surfaces reflect and the environment, W/m^2"},
-         {"directIrradiance", "d2 rgba32f, two texels a leaf", "the same by what shines"},
+          "xyz irradiance of the front, then of the back, from reflected light and the environment, W/m^2"},
+         {"directIrradiance", "d2 rgba32f, two texels a leaf", "the same from emitted light"},
          {"radiance", "d2 rgba32f, two texels a disc, six a group",
           "xyz reflected radiance to the front and the back, or along the axes, W/(sr m^2)"},
-         {"emission", "d2 rgba32f, two texels a disc, six a group", "the same that is emitted"},
+         {"emission", "d2 rgba32f, two texels a disc, six a group", "emitted radiance, in the same order"},
          {"outgoing", "d2 rgba32f, a texel for each direction of each node with a glossy leaf",
           "xyz radiance that its Phong lobe reflects in a direction, W/(sr m^2)"},
          {"outgoingRows", "buffer", "word a node: its row in `outgoing`; 2^32 - 1: none"}}};

@@ -66,7 +66,7 @@ struct PortTraits<implicit_visibility::ElementLinks> {
   static PortKind kind() {
     return {
         "ElementLinks",
-        "which surface elements see which, by bins of directions",
+        "visibility between surface elements, by bins of directions",
         {{"directions", "buffer", "vec4 a bin: xyz direction of its centre; w solid angle, sr",
           PortResource::Sign::any},
          {"first", "buffer",

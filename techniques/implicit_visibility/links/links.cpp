@@ -45,12 +45,13 @@ class CreateLinksPass : public Pass {
                             published(BinMapping::uniform)};
   // Which surface a bin holds is told by leaves, whatever the node: 2 costs 0.4 to 0.9 % of the light, and
   // less time.
-  Param<float> split{this,
-                     "split",
-                     2.0f,
-                     within(0.0f, 64.0f),
-                     "how many bins a node may cover before it is split; 0: all are, down to the leaves",
-                     published(1.0f)};
+  Param<float> split{
+      this,
+      "split",
+      2.0f,
+      within(0.0f, 64.0f),
+      "number of bins that a node may cover before it is split; 0: all nodes are split, down to the leaves",
+      published(1.0f)};
   Out<ElementLinks> result{this, "links", "pairs of nodes that may exchange light"};
 
   bool worksOnHost() const override { return true; }
@@ -116,12 +117,11 @@ class PushLinksPass : public Pass {
   In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
   Param<Fill> fill{
       this, "fill", Fill::centre,
-      "centre: an element takes the bins whose middle ray meets its outline; one: the one bin of its middle",
+      "bins that an element fills; centre: those whose central ray hits its outline; one: the bin of its centre",
       published(Fill::one)};
   Param<Push> push{
       this, "push", Push::rebinned,
-      "rebinned: links of inner nodes are seen anew from the leaf; kept: in the bin and at the distance of "
-      "the node",
+      "bin and distance of a link inherited from an inner node; rebinned: as seen from the leaf; kept: as seen from the inner node",
       published(Push::kept)};
   Out<ElementLinks> result{this, "links", "what each leaf sees, bin by bin"};
 

@@ -38,16 +38,16 @@ struct PortTraits<virtual_area_lights::SurfacePoints> {
     constexpr auto kAny = PortResource::Sign::any;
     return {
         "SurfacePoints",
-        "points spread evenly over the surfaces, on both sides of the border to the device",
+        "points spread evenly over the surfaces, on the host and on the device",
         {{"position", "d2 rgba32f, a texel a point",
-          "xyz posWorld, m; w area of the surface that it stands for, m^2", kAny},
+          "xyz posWorld, m; w area of the surface that the point represents, m^2", kAny},
          {"normal", "d2 rgba32f, a texel a point",
-          "xyz unit normal to the point's side; w model, 0: all that stands still", kAny},
+          "xyz unit normal to the point's side; w number of the model, 0 for static objects", kAny},
          {"radius", "d2 rgba32f, a texel a point",
-          "x farthest place that it stands for, m; y Phong exponent; z 1 where the surface is glossy, else "
-          "0; w 1 for a front side, 0 for the back of a point at the same place"},
-         {"cells", "buffer", "uint a cell: where its list begins in `candidates`; and one more"},
-         {"candidates", "buffer", "uint each: numbers of points, growing in a cell"}}};
+          "x radius of the surface that the point represents, m; y Phong exponent; z 1 for a glossy surface, else 0; w 1 for a front side, 0 for the back of a point at the same position"},
+         {"cells", "buffer",
+          "uint for each cell: where its list begins in `candidates`; and one more for the end"},
+         {"candidates", "buffer", "uint: numbers of points, ascending in each cell"}}};
   }
   static void contents(const virtual_area_lights::SurfacePoints& port, PortContents& contents) {
     contents.texture("position", port.position);

@@ -32,7 +32,7 @@ struct PortTraits<virtual_area_lights::VertexPoints> {
           "`neighbours` uint for each side of each vertex: numbers of points of its model on that side, the "
           "nearest first; all bits: none"},
          {"glossy", "buffer", "the same of points that reflect by the vertex's exponent"},
-         {"objects", "buffer", "uint a vertex: the object that it belongs to"}}};
+         {"objects", "buffer", "uint for each vertex: its object"}}};
   }
   static void contents(const virtual_area_lights::VertexPoints& port, PortContents& contents) {
     contents.buffer("any", port.any);

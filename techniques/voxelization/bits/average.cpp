@@ -14,7 +14,7 @@ class AveragePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   Param<Masks> masks{
       this, "masks", Masks::any,
-      "which voxels with holes have a bit: all; those that are covered by half; or by chance, as often as they are covered, so that a lattice keeps its mean opacity"};
+      "voxels with holes that have a bit; any: all; half: those covered by a half or more; random: each with its coverage as probability, so that a lattice keeps its mean opacity"};
   Out<AttributeGrid> attributes{this, "attributes",
                                 "albedo, normal and emission, averaged with the coverage as weight"};
   Out<OccupancyGrid> opacity{this, "opacity", "mean or sum of the coverages, as the list says"};

@@ -39,10 +39,10 @@ class SolidPass : public BitVoxelizer {
   enum class Inwards { leave, fill };
 
   In<VoxelFragments> base{this, "fragments", Presence::optional,
-                          "surface samples that the inside is added to; the grid is theirs then"};
+                          "surface samples to which the inside is added; their grid is used"};
   Param<Inwards> inwards{
       this, "inwards", Inwards::leave,
-      "closed surfaces whose front sides look inwards: rooms, which hold air, or solid like the others"};
+      "closed surfaces whose front sides face inwards; leave: they are rooms, which hold air; fill: they are solid like the others"};
 
   static constexpr std::size_t kMostNames = 8;  // of objects in one message
 

@@ -15,15 +15,15 @@ namespace lumivox {
 class BackgroundWriter {
  public:
   BackgroundWriter() = default;
-  /// Waits for what was given, and logs the failure that nobody has asked for.
+  /// Waits until everything is written, and logs a failure that was not thrown.
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
-  /// `write` throws when it fails; its message should name the file. Waits while as many wait as fit in
-  /// memory with ease. Throws what an earlier one threw: after a failure nothing more is written.
+  /// `write` throws when it fails; its message should name the file. Blocks while the queue is full. Throws
+  /// the error of an earlier `write`: after a failure nothing more is written.
   void submit(std::function<void()> write);
-  /// Waits until everything is written; throws what failed.
+  /// Waits until everything is written; throws the first failure.
   void finish();
 
  private:

@@ -11,11 +11,11 @@ namespace lumivox {
 /// `bytes` as a zlib stream; level 1 (fast) to 12 (small), as libdeflate numbers them.
 std::string zlibStream(std::string_view bytes, int level);
 
-/// Deflated bytes that know how long they were.
+/// Deflated bytes with their inflated length.
 struct Deflated {
   std::string_view stream;
   std::uint64_t expandedBytes = 0;
-  /// Where the stream lies: in a string of its own, or in that of a file which it shares with others.
+  /// The stream, in a string of its own or in a part of a file's string that it shares with others.
   std::shared_ptr<const std::string> holder;
 
   static Deflated of(std::string_view bytes);

@@ -1,5 +1,5 @@
-// From linear radiance to what a display shows: exposure and tone curve, the same for every image that is
-// made to be looked at. EXR files and measures of radiance know nothing of it.
+// From linear radiance to display values: exposure and tone curve, the same for every displayed image. EXR
+// files and measures of radiance do not use it.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +8,16 @@
 
 namespace lumivox {
 
-/// What becomes of exposed radiance. `srgb` clips at 1 and encodes by the sRGB curve; `filmic` brings the
-/// lights below 1 by FilmicCurve before that; `linear` clips and stores the values as they are.
+/// The tone curve of exposed radiance. `srgb` clips at 1 and encodes by the sRGB curve; `filmic` applies
+/// FilmicCurve before that, which keeps bright light below 1; `linear` clips and stores the values unchanged.
 enum class Tone { linear, srgb, filmic };
 const char* name(Tone tone);              ///< "linear", "srgb", "filmic"
 Tone toneNamed(const std::string& word);  ///< Error for any other word
 
-/// That of images that are made to be looked at, unless somebody asks for another: sunlit floors and sheets
-/// keep their drawing, which `srgb` burns to white.
+/// The default for displayed images: sunlit floors and sheets keep their detail, which `srgb` clips to white.
 inline constexpr Tone kShownTone = Tone::filmic;
 
-/// Exposures beyond this many EV up or down are refused: no radiance of single precision needs them.
+/// The largest exposure, up or down, EV: no radiance in single precision needs more.
 inline constexpr double kLargestExposure = 100.0;
 
 struct Display {

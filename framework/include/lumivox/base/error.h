@@ -1,5 +1,5 @@
-// Errors of input. A bug is an assertion; an expected absence is an optional; everything a user can cause is
-// one of these.
+// Errors of input: everything that a user can cause. A bug is an assertion; an expected absence is an
+// optional.
 #pragma once
 
 #include <stdexcept>
@@ -42,7 +42,7 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How many findings are shown at once; of the others their number is said.
+/// The number of findings shown at once; the number of the others is shown.
 inline constexpr std::size_t kMostFindingsShown = 200;
 
 /// How many of so many findings are shown: all, or the first kMostFindingsShown.
@@ -61,7 +61,7 @@ class DiagnosticsError : public Error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// Something that may legitimately be absent on this machine (a model, a GPU). Tests count it as skipped.
+/// Something that may be absent on a machine (a model, a GPU). Tests count it as skipped.
 class AbsentError : public Error {
  public:
   using Error::Error;
@@ -70,11 +70,10 @@ class AbsentError : public Error {
 /// "a, b, c"; of very many the first ones, and how many more there are.
 std::string listed(const std::vector<std::string>& words);
 
-/// The candidate nearest to `word` by edit distance, or an empty string when none is near enough to be a slip
-/// of the pen.
+/// The candidate nearest to `word` by edit distance; empty when none is near enough for a typing error.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
-/// nearestWord() for a further finding: nothing where so many were found before that it will not be shown.
+/// nearestWord() for a further finding; empty if the finding will not be shown.
 std::string suggestionFor(const std::vector<Diagnostic>& findings, const std::string& word,
                           const std::vector<std::string>& candidates);
 

@@ -11,8 +11,8 @@
 
 namespace lumivox {
 
-/// The largest files of each kind that are read, in bytes: far above what is of use, far below what would
-/// bring a machine down.
+/// The largest files of each kind that are read, in bytes: far above useful sizes, far below the memory of a
+/// machine.
 inline constexpr std::uint64_t kLargestTextFile = std::uint64_t{64}
                                                   << 20;  ///< texts, materials, cards, shaders
 inline constexpr std::uint64_t kLargestModelFile = std::uint64_t{4} << 30;    ///< OBJ, also when unpacked
@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kLargestExrFile = std::uint64_t{4} << 30;      //
 inline constexpr std::uint64_t kLargestVolumeFile = std::uint64_t{8} << 30;   ///< OpenVDB
 inline constexpr std::uint64_t kLargestLibraryFile = std::uint64_t{1} << 30;  ///< techniques
 
-/// The bytes of a file: the one door through which files are read. Only regular files, or links to them: a
+/// The bytes of a file. All files are read by this function. Only regular files, or links to them: a
 /// directory, a device, a FIFO or a socket is refused and never waited for. Throws Error naming the file when
 /// it is missing, unreadable, none of those, larger than `limitBytes` or larger than the memory there is.
 std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes = kLargestTextFile);
@@ -29,13 +29,12 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
 /// The first bytes of a file, at most `limitBytes`; refuses what readFile refuses, but no size.
 std::string readFileStart(const std::filesystem::path& path, std::uint64_t limitBytes);
 
-/// Refuses (Error) what exists under this name and is not a regular file: for libraries that open files by
-/// themselves.
+/// Error when the name exists and is not a regular file: for libraries that open files by themselves.
 void requireRegularFile(const std::filesystem::path& path);
 
-/// Whether this process has read the file, under this name or another that leads to it (by device and inode):
-/// what one of the functions above has opened, or allowed a library to open. A file that the process has
-/// written since counts as its own.
+/// Whether this process has read the file, under this name or another one (by device and inode), with one of
+/// the functions above or a library that they allowed to open it. A file that the process has written since
+/// does not count.
 bool wasRead(const std::filesystem::path& path);
 
 /// As readFile, but unpacks gzip (RFC 1952) when the name ends in ".gz"; the limit holds for the unpacked

@@ -8,11 +8,11 @@
 
 namespace lumivox {
 
-/// Logs a warning that has a place. One that was told before in this process is not told again.
+/// Logs a warning with a place, once in this process.
 void logFinding(const Diagnostic& finding);
 
-/// Takes the warnings of this thread while it lives, in place of the log: those with a place as they are,
-/// those of logWarning() without one. The innermost one takes them.
+/// Receives the warnings of this thread while it lives, in place of the log; those of logWarning() have no
+/// place. The innermost object receives them.
 class WarningCollector {
  public:
   WarningCollector();

@@ -20,8 +20,8 @@ struct ContentHash {
   std::string text() const;  ///< 32 hexadecimal digits
 };
 
-/// Accumulates values into one hash. Sizes are hashed with strings and vectors, so that neighbours cannot run
-/// together.
+/// Accumulates values into one hash. The sizes of strings and vectors are hashed too, so that ("ab", "c") and
+/// ("a", "bc") differ.
 class Hasher {
  public:
   Hasher();

@@ -31,8 +31,8 @@ class ImageBuffer {
   std::vector<float>& values() { return values_; }
   const std::vector<float>& values() const { return values_; }
 
-  /// Whether the values are radiance, which pictures expose: unless it was said otherwise, those of one
-  /// channel are not (occlusion and other fractions), all others are.
+  /// Whether the values are radiance, which is exposed for display. By default images of one channel
+  /// (occlusion and other fractions) are not, and all others are.
   bool isRadiance() const { return radiance_; }
   void setRadiance(bool radiance) { radiance_ = radiance; }
 

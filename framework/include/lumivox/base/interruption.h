@@ -1,12 +1,12 @@
-// What a process says when it is interrupted.
+// The message of an interrupted process.
 #pragma once
 
 #include <string>
 
 namespace lumivox {
 
-/// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP end the process as ever, but with a word on stderr
-/// about what is kept. Of several the last to speak is heard.
+/// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP end the process as usual, with a message on stderr
+/// about what is kept. Of several objects the last one that set a message writes it.
 class InterruptionNote {
  public:
   InterruptionNote();

@@ -46,13 +46,13 @@ class LogCapture {
   std::string text_;
 };
 
-/// Warnings told more than once are written once; this writes how often each was repeated. The end of a
+/// Repeated warnings are written once; this writes how often each was repeated. Called at the end of a
 /// program.
 void logRepeatedWarnings();
 
-/// How far a command has come, on stderr. In a terminal one line that fits it and stays below the messages;
-/// elsewhere plain lines: the first counted point at once, then at intervals, and the last. Nothing when
-/// quiet. Of several the latest that moved is shown. Thread-safe.
+/// The progress of a command, on stderr. In a terminal: one line that fits it and stays below the messages.
+/// Elsewhere: plain lines for the first step, then at intervals, and for the last step. Nothing when quiet.
+/// Of several objects the one that advanced last is shown. Thread-safe.
 class Progress {
  public:
   /// `unit`: the plural of what is counted, such as "points"; without one only the share is shown, and lines

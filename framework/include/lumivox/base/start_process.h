@@ -1,4 +1,4 @@
-// Programs that are started here end with this process, even when that is killed.
+// Started programs end with this process, even when it is killed.
 #pragma once
 
 #include <sys/types.h>

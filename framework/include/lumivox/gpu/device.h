@@ -1,5 +1,5 @@
-// The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands
-// on them. No OpenGL name appears in this header; a Device is used on the thread that made it.
+// The interface to OpenGL: an OpenGL 4.5 core context without a display, its resources and the commands on
+// them. No OpenGL name appears in this header. A Device is used only on the thread that made it.
 //
 // Conventions for shader authors:
 // - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0
@@ -170,9 +170,9 @@ struct SpecialisationValue {
 
 enum class ShaderInput { automatic, spirv, glsl };
 
-/// The freedom of a driver in sums and products. `exact`: one expression, neither fused nor reordered, so
-/// that all drivers and both routes give the same bits. `fast`: whatever OpenGL allows, as a renderer ships
-/// it: for times.
+/// A driver's freedom in sums and products. `exact`: neither fused nor reordered, so that all drivers and
+/// both routes give the same bits. `fast`: everything that OpenGL allows, as in a released renderer, for
+/// timing.
 enum class Arithmetic { exact, fast };
 
 /// A linked program. Errors carry the driver's log and the name.
@@ -198,7 +198,7 @@ class Program {
 // ---- commands
 // -------------------------------------------------------------------------------------------------------------------
 
-/// The bytes of a uniform block. Those of small blocks lie within, so that a draw allocates nothing.
+/// The bytes of a uniform block. Small blocks are stored inside the object, so that a draw allocates nothing.
 class BlockBytes {
  public:
   BlockBytes() = default;
@@ -266,8 +266,8 @@ struct RenderTargets {
   bool clear = true;  ///< colours to 0, depth to 1
 };
 
-/// Draws go to its targets while it lives. It ends by itself, also when an error passes through. Made by
-/// Device::drawTo; one at a time.
+/// A scope in which draws go to its targets. Its destructor unbinds them, also when an exception passes. Made
+/// by Device::drawTo; one at a time.
 class [[nodiscard]] Drawing {
  public:
   ~Drawing();
@@ -320,8 +320,8 @@ class Device {
   /// How programs reach the driver, as records name it: "spirv", "glsl", "spirv fast", "glsl fast".
   std::string programRoute() const;
 
-  /// Every command between enter and leave belongs to this pass: what the driver says is logged under its
-  /// name. Errors do not carry it; whoever runs the pass knows it.
+  /// Every command between enter and leave belongs to this pass: the driver's messages are logged under its
+  /// name. Errors do not contain the name; the caller adds it.
   void enterPass(const std::string& name);
   void leavePass();  ///< in a debug context: throws Error for a driver error since enterPass
 
@@ -330,8 +330,8 @@ class Device {
   void dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings,
                         const Buffer& arguments, std::uint64_t offsetBytes = 0);
 
-  /// Binds targets and state for the draws while what it returns lives. Viewport = the whole target. What a
-  /// drawing draws to may not be read by its draws, nor by anything before it has ended.
+  /// Binds targets and state for the draws while the returned object lives. Viewport = the whole target.
+  /// Neither its draws nor any other command may read the targets before it ends.
   Drawing drawTo(const RenderTargets& targets, const RasterState& state);
   /// Indexed triangles (32-bit indices); attributes are pulled from storage buffers by gl_VertexID.
   void drawIndexed(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& indices,
@@ -357,8 +357,8 @@ class Device {
   /// Bytes that were moved or filled by commands that are no shader's, since the device was made.
   struct Transfers {
     std::uint64_t uploaded = 0, downloaded = 0, cleared = 0;
-    /// How often something was downloaded while dispatches or draws were under way since the last finish():
-    /// each time the host waited for all of them.
+    /// The number of downloads since the last finish() while dispatches or draws were under way: at each the
+    /// host waited for all of them.
     std::uint64_t stalls = 0;
   };
   Transfers transfers() const;
@@ -377,9 +377,8 @@ class Device {
 /// Device::programRoute() in words: "SPIR-V", "GLSL made from the SPIR-V, fast arithmetic".
 std::string programRouteText(const Device& device);
 
-/// Device times of the parts of frames from time stamps, which are read only when the device has long passed
-/// them: nothing waits between the parts, nor between frames. Whether time stamps deserve belief is told by
-/// DeviceInfo::timerQueriesTrusted.
+/// Device times of the parts of frames, from time stamps that are read several frames later: nothing waits
+/// between parts or frames. DeviceInfo::timerQueriesTrusted says whether the time stamps can be trusted.
 class PassTimers {
  public:
   /// So many frames may be under way; a further one waits for the oldest.

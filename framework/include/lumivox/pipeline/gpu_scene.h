@@ -1,6 +1,6 @@
 // A scene on the device: vertex, index and material buffers, textures, and drawing. Shared by all passes;
-// uploaded on first use. What nothing writes to is on a device once, whoever uses it: equal bits, one
-// resource. GLSL side: shaders/common/scene.glsl.
+// uploaded on first use. Read-only resources with equal bits are on a device once. GLSL side:
+// shaders/common/scene.glsl.
 #pragma once
 
 #include <cstdint>

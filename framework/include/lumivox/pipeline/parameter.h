@@ -13,8 +13,8 @@ namespace lumivox {
 
 class Pass;
 
-/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default, and where its
-/// paper says so the value that it has as published. Set from the pipeline text.
+/// A parameter of a pass: a number, a switch (on/off) or a word, with its range, its default and, if the
+/// paper gives one, its published value. Set from the pipeline text.
 class ParamBase {
  public:
   enum class Type { integer, number, flag, word };
@@ -32,7 +32,7 @@ class ParamBase {
   virtual std::string valueText() const = 0;
   virtual std::string defaultText() const = 0;
   virtual std::string publishedText() const = 0;  ///< empty: the paper does not say
-  /// A text gives the value, which `as_published` then must not change (Pass::applyPublished).
+  /// Marks the value as given by a text, so that `as_published` does not change it (Pass::applyPublished).
   void state() { stated_ = true; }
   bool isStated() const { return stated_; }
   virtual void setDefault() = 0;
@@ -43,7 +43,7 @@ class ParamBase {
   virtual std::string set(const std::string& word) = 0;
 
  protected:
-  /// Of a parameter that has a published value, once it is constructed.
+  /// Called by the constructor of a parameter with a published value.
   static void addPublishedForm(Pass* pass);
   double low_ = 0, high_ = 0;
   std::vector<std::string> choices_;
@@ -55,8 +55,8 @@ class ParamBase {
   bool stated_ = false;
 };
 
-/// The value that a parameter has in the paper: the last word of its declaration. A pass that declares one
-/// has the switch `as_published`, which sets them all.
+/// A parameter's value in the paper: the last word of its declaration. A pass with such a parameter has the
+/// switch `as_published`, which sets all of them.
 template <class T>
 struct PublishedValue {
   T value;
@@ -141,7 +141,7 @@ class Param<bool> : public ParamBase {
   MaybePublished<bool> published_;
 };
 
-/// What the compiler calls a value: "lobe" of lumivox::Gather::Lobe::lobe; empty for a number without a name.
+/// The compiler's name of a value: "lobe" for lumivox::Gather::Lobe::lobe; empty for a number without a name.
 template <auto kValue>
 constexpr std::string_view valueName() {
   constexpr std::string_view function = __PRETTY_FUNCTION__, before = "kValue = ";
@@ -193,8 +193,8 @@ class Param : public WordParam {
   operator Word() const { return static_cast<Word>(value_); }
 };
 
-/// The switch `as_published`. Every pass with a published value has it; one is declared where the printed
-/// form differs in more than parameters have words for, which `more` tells. The pass then asks it.
+/// The switch `as_published`. Every pass with a published value has it. A pass declares it itself if its
+/// printed form differs in more than parameters; `more` says in what. The pass then reads it.
 class PublishedForm : public Param<bool> {
  public:
   explicit PublishedForm(Pass* pass, std::string more = {});

@@ -45,12 +45,12 @@ constexpr Needs operator|(Needs a, Needs b) {
 /// The first need that the scene does not meet, in words ("a glossy material"), or empty.
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
-/// Sources that a pass reads besides its inputs and parameters. A pass is run again only when one of these or
+/// Sources that a pass reads besides its inputs and parameters. A pass runs again only when one of these or
 /// an input changed. materials: with their textures. lights: also the motion of emissive objects. camera:
-/// also the size of the image, but not its lens. lens: its aperture and focus; passes without it see as
-/// through a pinhole. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index.
-/// history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in every
-/// frame of a run that accumulates (RenderOptions::accumulate).
+/// also the image's size, but not the lens. lens: aperture and focus; passes without it render as through a
+/// pinhole. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index. history:
+/// results of earlier frames, by PassContext::history() and accumulated(); with accumulation
+/// (RenderOptions::accumulate) such a pass runs in every frame.
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,
@@ -80,8 +80,8 @@ constexpr bool reads(Reads set, Reads one) {
 /// The levels of a grid with mips that an output fills, or that an input reads.
 enum class Levels { unspecified, finest, all };
 
-/// An input's expectation of the output behind it, beyond its kind. Another output is a warning: the light
-/// would be wrong.
+/// What an input expects of the connected output, beyond its kind. Any other output gives a warning, since
+/// the light would be wrong.
 struct Expects {
   std::optional<Contributes> component;  ///< of the image, which the output holds; `nothing`: none of them
   Levels levels = Levels::unspecified;   ///< all: each must be filled
@@ -115,14 +115,13 @@ class OutBase : public PortBase {
   Contributes contributes() const { return contributes_; }
   Levels levels() const { return levels_; }
   Needs needs() const { return needs_; }
-  /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes
-  /// the output.
+  /// Whether this run uses the output: false when it was pruned. A pass computes only wanted outputs.
   bool wanted() const { return wanted_; }
   virtual bool hasValue() const = 0;
   virtual void reset() = 0;
   /// Contents of the value; none without a value.
   virtual PortContents contents() const = 0;
-  /// The textures among it.
+  /// The textures among contents().
   std::vector<gpu::TextureRef> textures() const;
 
  private:
@@ -134,8 +133,8 @@ class OutBase : public PortBase {
   bool wanted_ = true;
 };
 
-/// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the
-/// last reader has run, unless a later frame may need them again.
+/// An output. run() assigns it whenever it is wanted. After its last reader its resources return to the
+/// executor's pool, unless a later frame may need them.
 template <class Port>
 class Out : public OutBase {
  public:
@@ -163,9 +162,9 @@ class Out : public OutBase {
   std::optional<Port> value_;
 };
 
-/// history: optional, and read one frame late: the value that the connected output (of this pass, of a later
-/// or an earlier one) had at the end of the frame before. Absent in the first frame, after histories were
-/// emptied, and in runs that do not accumulate.
+/// history: optional, and the value of the connected output (of this pass, a later or an earlier one) at the
+/// end of the previous frame. Absent in the first frame, after histories were emptied, and in runs that do
+/// not accumulate.
 enum class Presence { required, optional, history };
 
 class InBase : public PortBase {
@@ -174,9 +173,10 @@ class InBase : public PortBase {
          Needs needs, Expects expects);
   Presence presence() const { return presence_; }
   const Expects& expects() const { return expects_; }
-  /// Contents that the scene must have for this input to be read. Without them nothing is made for its sake.
+  /// Contents that the scene must have for this input to be read. Without them the input does not keep its
+  /// source alive.
   Needs needs() const { return needs_; }
-  /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
+  /// False when nothing is connected or the connected output was pruned: the pass then uses the variant
   /// without this input.
   bool present() const {
     return presence_ == Presence::history ? holds() : source_ != nullptr && source_->hasValue();
@@ -187,7 +187,7 @@ class InBase : public PortBase {
   /// Connects or disconnects; the input must take the kind (checked by the graph with a message; asserted
   /// here).
   void connect(const OutBase* source);
-  /// For a history: takes what the source has now, to be read in the next frame; or forgets it.
+  /// For a history: keeps the source's present value for the next frame; or forgets the kept value.
   virtual void hold() = 0;
   virtual void forget() = 0;
 
@@ -228,8 +228,8 @@ class In : public InBase {
   std::optional<Port> held_;  ///< with Presence::history
 };
 
-/// An input that takes an output of any kind with fields (PortKind::fields), be it a technique's own, and
-/// sees of it what an exporter sees. It is read in the frame that made it.
+/// An input for outputs of any kind with fields (PortKind::fields), a technique's own included. The pass sees
+/// the contents that an exporter sees. It is read in the frame that made it.
 class InVoxels : public InBase {
  public:
   InVoxels(Pass* pass, std::string name, std::string meaning = {})
@@ -239,7 +239,7 @@ class InVoxels : public InBase {
   PortContents contents() const { return source_->contents(); }
   void hold() override {}
   void forget() override {}
-  /// The name under which texts and messages know it: no output is of this kind.
+  /// The kind in texts and messages: no output is of this kind.
   static const PortKind& anyVoxels();
 
  protected:
@@ -273,19 +273,19 @@ class PassContext {
   /// Resources from the pool: contents are undefined. They return to the pool when the last reference goes.
   virtual gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) = 0;
   virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
-  /// Has a count that the device finds checked without any pass waiting for it: one word of a buffer, read
-  /// when the device has done the whole frame. `check` returns false when the pass had taken too little room
-  /// for what it counts, and notes how much it needs; the frame is then rendered again from nothing before
-  /// anything of it is given out. It may throw an Error and warn() through the context that it is given.
+  /// Checks a count that the device finds, without a wait: one word of a buffer, read after the whole frame.
+  /// `check` returns false if the pass had allocated too little room for that count, and records the room
+  /// that it needs; the frame is then rendered again from the start, and nothing of the failed frame is
+  /// delivered. It may throw an Error and warn() through the context that it is given.
   using CountCheck = std::function<bool(PassContext& frame, std::uint32_t count)>;
   virtual void checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBytes, CountCheck check) = 0;
   /// A warning to the user, once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
-  /// A result that is made once and kept while it stays valid: that of make(), or of an earlier frame with
-  /// the same `what` and `key`. The key holds what the thing depends on and what changes while the pass
-  /// lives, compared by ==: placements, the place of a grid. It needs neither parameters, seed nor the
-  /// contents of the scene, since nothing is kept over their change, nor over PipelineExecutor::invalidate();
-  /// with --keep-everything nothing is kept at all. A result that a run does not ask for is released.
+  /// A result that is kept while it stays valid: the result of make(), or that of an earlier frame with the
+  /// same `what` and `key`. The key, compared by ==, holds everything that the result depends on and that
+  /// changes while the pass lives, such as the place of a grid. Parameters, seed and contents of the scene
+  /// need not be in it: their change, and PipelineExecutor::invalidate(), drop all results. With
+  /// --keep-everything nothing is kept. A result that a run of the pass does not request is released.
   /// explain() reports what was reused.
   template <class Key, class Make>
   const auto& kept(const std::string& what, const Key& key, Make&& make) {
@@ -301,19 +301,18 @@ class PassContext {
     entry.key = key;
     return std::any_cast<const Value&>(entry.value);
   }
-  /// Resources that stay for the next frame; needs Reads::history. Every call returns both sides, so that a
-  /// frame that has to be rendered again finds `previous` as it was. `previous` is null in the first frame,
-  /// after a frame in which the pass did not ask for this label with this shape, after a change of the
-  /// image's size, a parameter, the seed or the pipeline, and in runs that do not accumulate.
+  /// Resources that stay for the next frame; needs Reads::history. Both resources are separate, so that a
+  /// frame that is rendered again finds `previous` unchanged. `previous` is null in the first frame, after a
+  /// frame without a request for this label and shape, after a change of the image's size, a parameter, the
+  /// seed or the pipeline, and in runs that do not accumulate.
   virtual History<gpu::TextureRef> history(const gpu::TextureDescription& description,
                                            const std::string& label) = 0;
   virtual History<gpu::BufferRef> history(std::uint64_t sizeBytes, const std::string& label) = 0;
-  /// For how many frames in a row nothing has changed that this pass or any source of it depends on: 0 in the
-  /// first frame and in runs that do not accumulate. Needs Reads::history.
+  /// Number of frames in a row in which nothing changed that this pass or any source of it depends on: 0 in
+  /// the first frame and in runs that do not accumulate. Needs Reads::history.
   virtual int accumulated() const = 0;
-  /// True when this run is inspected (RenderOptions::health): what a pass measures about itself may then cost
-  /// time, and is reported with note(), a sentence that begins in the middle: "1.1 % of the irradiance was
-  /// ...".
+  /// True with RenderOptions::health: a pass may then spend time on measuring itself. It reports with note(),
+  /// a sentence that follows the pass's name: "1.1 % of the irradiance was ...".
   virtual bool inspects() const = 0;
   virtual void note(const std::string& text) = 0;
 
@@ -342,7 +341,8 @@ class PassContext {
   void dispatchIndirect(const shader::BoundProgram& program, const shader::BindingSet& bindings,
                         const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
 
-  /// A d2 texture of the image's size: in 32-bit floats positions and radiances of any scale fit.
+  /// A d2 texture of the image's size. The default, 32-bit floats, holds positions and radiances of any
+  /// scale.
   gpu::TextureRef image(const std::string& label, gpu::Format format = gpu::Format::rgba32f);
   gpu::TextureRef volume(const glm::ivec3& size, gpu::Format format, const std::string& label,
                          int levels = 1);
@@ -381,14 +381,14 @@ class Pass {
   virtual void run(PassContext& frame) = 0;
   /// Sources read besides the inputs.
   virtual Reads readsFrom() const { return Reads::nothing; }
-  /// With Reads::partOfCamera: what it reads of the camera, such as where its grids lie. While that stays the
-  /// same, a moved camera is no reason to run the pass again.
+  /// With Reads::partOfCamera: the values that it derives from the camera, such as the place of its grids.
+  /// While these stay the same, a moved camera does not make the pass run again.
   virtual std::vector<float> readsOfCamera(const SceneSnapshot&) const { return {}; }
-  /// False for an input that the parameters, as they are set, make useless: nothing is made for its sake, and
-  /// it may be absent even where it is required. Whatever is connected must then leave the outputs as they
-  /// are, to the bit.
+  /// False for an input that the present parameters make useless. The input then does not keep its source
+  /// alive, and may be absent even if it is required. Its value must not change a bit of the outputs.
   virtual bool uses(const InBase&) const { return true; }
-  /// How many indirect bounces the pass's indirect outputs model: which reference their bias is judged by.
+  /// Number of indirect bounces that the pass's indirect outputs model. It decides the reference for their
+  /// bias.
   virtual int indirectBounces() const { return 1; }
   /// True for a pass whose work is the host's: it is timed by the host's clock, with the device idle before
   /// and after.
@@ -402,8 +402,8 @@ class Pass {
   const std::vector<OutBase*>& outputs() const { return outputs_; }
   const std::vector<ParamBase*>& parameters() const { return parameters_; }
 
-  /// With `as_published on` gives every parameter its published value, and with `off` its default, but for
-  /// those that a text states. In words what contradicts `on`; else empty. By the framework, once parameters
+  /// Gives every parameter that no text states its published value (`as_published on`) or its default
+  /// (`off`). Returns in words what contradicts `on`; empty otherwise. The framework calls it once parameters
   /// are set.
   std::string applyPublished();
 

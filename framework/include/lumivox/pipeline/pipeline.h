@@ -53,12 +53,12 @@ struct PipelineParameter {
   std::string misfit(const ParameterValue& candidate) const;
 };
 
-/// An axis of sweeps that is no parameter: how many frames of the still scene are accumulated, from 1 on.
+/// An axis of sweeps that is not a parameter: the number of accumulated frames of the still scene, from 1 on.
 inline constexpr const char* kAccumulatedFrames = "frames";
 inline constexpr int kMostAccumulatedFrames = 1 << 16;
 
-/// `sweep NAME { parameter [values] ... }`: the grid over its lists. `sweep NAME list { ... }`: the points
-/// along them, the first values of all lists together, then the second ones.
+/// `sweep NAME { parameter [values] ... }`: the grid over its lists. `sweep NAME list { ... }`: the first
+/// values of all lists together, then the second ones, and so on.
 struct Sweep {
   std::string name;
   bool isList = false;  ///< then all axes have the same number of values
@@ -93,8 +93,8 @@ class Pipeline {
   std::vector<Sweep> sweeps;
   std::shared_ptr<const dsl::Document> document;
 
-  /// Parses "name=value" settings, and returns those alone; Error names an unknown parameter (with the
-  /// nearest) or a value out of its range.
+  /// Parses "name=value" settings and returns them; Error for an unknown parameter (with the nearest) or a
+  /// value out of its range.
   ParameterValues settings(const std::vector<std::string>& assignments) const;
   /// Names of the techniques that it needs, each once, in text order.
   std::vector<std::string> techniques() const;
@@ -116,27 +116,26 @@ struct RenderOptions {
   std::uint64_t seed = 1;
   bool health = false;     ///< scan every pass output for NaN, Inf and negative values; not part of the times
   bool countWork = false;  ///< count what every pass does: the same images, several times slower
-  /// Passes find what they left in the frame before (PassContext::history(), accumulated(), inputs that are
-  /// histories). Off: every frame is made as if it were the first, so that frame N alone is frame N of a
+  /// Passes find their results of the previous frame (PassContext::history(), accumulated(), history inputs).
+  /// Off: every frame is rendered as if it were the first, so that frame N alone equals frame N of a
   /// sequence.
   bool accumulate = false;
-  /// Debugging: every frame is made a second time from scratch, and FrameResult::readsFindings names passes
-  /// whose Reads, Needs or uses() leave out what they depend on. Needs the memory of both.
+  /// For debugging: every frame is rendered a second time from scratch, and FrameResult::readsFindings names
+  /// passes whose Reads, Needs or uses() lack a dependency. Needs the memory of both.
   bool checkReads = false;
   bool interactive =
       false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
   int width = 0, height = 0;  ///< 0: the camera's
-  /// Where resources wait that no pass uses, for several executors of one device, of which one renders at a
-  /// time. Null: each has its own.
+  /// The pool of unused resources, shared by several executors of one device, of which one renders at a time.
+  /// Null: each has its own.
   std::shared_ptr<TransientMemory> transientMemory{};
 };
 
 /// Bytes of an executor's textures and buffers, as if it were alone on the device.
 struct MemoryUse {
   std::uint64_t bytes = 0;  ///< the scene's included
-  /// Of them, the parts of the scene that nothing writes to: they are on the device once, whichever executors
-  /// hold them.
+  /// The part of `bytes` for read-only parts of the scene, which are on the device once for all executors.
   std::uint64_t sharedBytes = 0;
 };
 
@@ -160,16 +159,17 @@ struct FrameResult {
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
-  /// The most that MemoryUse::bytes was meanwhile, whatever else is on the device.
+  /// The largest MemoryUse::bytes during the frame.
   std::uint64_t peakBytes = 0;
   /// With `checkReads`: "pass voxels, port grid: 96 of 4096 bytes differ from a run from scratch; ..."
   std::vector<std::string> readsFindings;
   std::vector<std::string> healthFindings;  ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
-  /// With `health`, what passes measured about themselves: "pass gather: 1.1 % of the irradiance was ..."
+  /// With `health`: notes of passes, "pass gather: 1.1 % of the irradiance was ..."
   std::vector<std::string> notes;
 };
 
-/// One thing that a run leaves out. camera, scene: a trait of these that no pass of the run reads.
+/// One thing that a run leaves out. camera, scene: a trait of the camera or scene that no pass of the run
+/// reads.
 struct LeftOut {
   enum class Level { plugin, pass, variant, resource, time, camera, scene } level;
   std::string what, why;
@@ -179,8 +179,8 @@ struct LeftOut {
 };
 const char* name(LeftOut::Level level);
 
-/// The parts of a pipeline that are left out on a scene. Variants, shared memory and times are known once a
-/// frame was rendered.
+/// The parts of a pipeline that are left out on a scene. Variants, shared memory and times are known after
+/// the first frame.
 struct Explanation {
   std::vector<LeftOut> leftOut;
   std::size_t passesKept = 0, passesTotal = 0;
@@ -199,38 +199,37 @@ class PipelineExecutor {
   ~PipelineExecutor();
 
   enum class Images { no, yes };
-  /// The thing timed: the frame as a whole, without any instrument inside of it, or its passes, for
-  /// timedPasses(). Where the device keeps time for its passes, such a frame waits for nothing; where it does
-  /// not (DeviceInfo::timerQueriesTrusted), it waits before and after every pass.
+  /// What is timed: the whole frame, without instruments inside, or its passes, for timedPasses(). If the
+  /// device's time stamps are trusted (DeviceInfo::timerQueriesTrusted), such a frame waits for nothing;
+  /// otherwise it waits before and after every pass.
   enum class Timing { frame, passes };
   /// Renders the scene at `time`. Passes whose inputs did not change since the last call are not run again.
   FrameResult render(double time, int frameIndex = 0, Images images = Images::yes,
                      Timing timing = Timing::frame);
-  /// The same for a snapshot made elsewhere: the viewer's own camera.
+  /// The same for a given snapshot, such as that of the viewer's camera.
   FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Images images = Images::yes,
                      Timing timing = Timing::frame);
-  /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
-  /// with their device times. Waits for the device.
+  /// The passes of every frame rendered with Timing::passes since the last call, in their order, with device
+  /// times. Waits for the device.
   std::vector<std::vector<PassRecord>> timedPasses();
-  /// Forgets cached results and what passes keep between frames, so that the next frame runs every
+  /// Drops cached results and everything that passes keep between frames, so that the next frame runs every
   /// kept pass. Histories stay.
   void invalidate();
   /// The next frame finds no history and counts as the first.
   void emptyHistories();
 
-  /// Other parameters from now on, over the pipeline's defaults. Passes whose parameters stay as they are
-  /// keep what they made; images are those of a new executor, to the bit. Histories are emptied. Throws
-  /// DiagnosticsError like the constructor, and then leaves everything as it was.
+  /// Sets the parameters, over the pipeline's defaults. Passes with unchanged parameters keep their results;
+  /// images equal those of a new executor, to the bit. Histories are emptied. Throws DiagnosticsError like
+  /// the constructor, and then changes nothing.
   void setParameters(const ParameterValues& values);
-  /// Another seed from now on: passes that have asked for it run again, with those that read them, and
-  /// histories are emptied.
+  /// Sets the seed. Passes that read it run again, with their readers, and histories are emptied.
   void setSeed(std::uint64_t seed);
-  /// From now on RenderOptions::health.
+  /// Sets RenderOptions::health.
   void setHealth(bool health);
-  /// Whether a pass has asked for the seed in a frame so far. If none has, every seed gives the same bits.
+  /// Whether a pass has read the seed in a frame so far. If none has, every seed gives the same bits.
   bool readsSeed() const;
-  /// Another scene from now on, such as the same text after an edit; it must outlive the executor, the one
-  /// before may go. Passes that read what differs run again, and histories are emptied. Error when it lacks
+  /// Sets the scene, such as the same text after an edit. It must outlive the executor; the previous one may
+  /// be destroyed. Passes that read a difference run again, and histories are emptied. Error when it lacks
   /// the camera.
   void setScene(const Scene& scene);
 
@@ -241,13 +240,13 @@ class PipelineExecutor {
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
   /// for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
-  /// The same for this output alone: those that were kept before are wanted no more.
+  /// The same for this output alone; outputs kept before are released.
   void keepOnly(const std::string& pass, const std::string& port);
-  /// Resources that a frame does not use are freed at its end (true, as it begins), or stay for the next one:
-  /// for frames that want now this and now that output, and are timed.
+  /// Whether resources that a frame does not use are freed at its end (the default) or stay for the next one:
+  /// for timed frames that want different outputs in turn.
   void freeUnused(bool free);
-  /// Per output, whether it is made or not: the most bounces that its pass or one before it models
-  /// (Pass::indirectBounces()); 1 of an output without indirect light.
+  /// For each output, pruned ones included: the largest number of bounces that its pass or one before it
+  /// models (Pass::indirectBounces()); 1 for an output without indirect light.
   std::map<std::string, int> indirectBounces() const;
   /// A pass of the pipeline with its parameters set, whether it runs or not. Error for an unknown name.
   const Pass& pass(const std::string& name) const;
@@ -259,8 +258,8 @@ class PipelineExecutor {
   std::unique_ptr<State> state_;
 };
 
-/// Runs one pass alone on hand-made inputs: for the closed-form tests of techniques. A run finds nothing that
-/// an earlier one left, unless accumulate() was called.
+/// Runs one pass alone on inputs that a test makes. A run finds no results of an earlier one, unless
+/// accumulate() was called.
 class PassHarness {
  public:
   PassHarness(gpu::Device& device, TechniqueSource& techniques, const std::string& technique,
@@ -276,8 +275,7 @@ class PassHarness {
     *source = std::move(value);
     connectInput(name, std::move(source));
   }
-  /// From now on histories and what the pass keeps are carried from run to run, as in frames in which nothing
-  /// changes.
+  /// Carries histories and kept results from run to run, as in frames in which nothing changes.
   void accumulate();
   void run(std::uint64_t seed = 1);
   template <class Port>
@@ -299,8 +297,8 @@ ImageBuffer neutralImage(int width, int height, Contributes component);
 
 /// A texture's image as the framework stores images: row 0 on top.
 ImageBuffer imageOf(const gpu::Texture& texture, int channels = 3);
-/// That of an output that has a value: of its first texture, in one channel where that is a fraction, and
-/// whether it is radiance. Error where it has no texture.
+/// The image of an output with a value: its first texture, in one channel for a fraction, with the flag for
+/// radiance. Error for an output without a texture.
 ImageBuffer imageOf(const OutBase& output);
 
 }  // namespace lumivox

@@ -1,7 +1,7 @@
-// Knowledge of a kind of port, in one place: the textures and buffers that it holds, the members that a
-// reader must heed, the fields that are exported of it, which voxels it occupies. The exporter, the health
-// scan, the stress battery, the measures of voxels and the documentation read this and nothing else, so that
-// a technique may bring a kind of its own:
+// The description of a kind of port: its textures and buffers, the members that a reader must heed, its
+// exported fields, and the voxels that it occupies. The exporter, the health scan, the stress battery, the
+// measures of voxels and the documentation read only this description, so a technique may bring a kind of its
+// own:
 //
 //   struct Octree {
 //     GridPlacement grid;
@@ -58,9 +58,8 @@ struct PortField {
   Role role = Role::value;
 };
 
-/// A member that says how the textures and buffers of a value are to be read. A reader that does not look at
-/// it takes them for something else, and nothing but its light tells. tests/tools/house_test.cpp notices such
-/// a reader among the techniques.
+/// A member that says how to read the textures and buffers of a value. A reader that ignores it gets wrong
+/// light and no message. tests/tools/house_test.cpp finds such readers among the techniques.
 struct PortCondition {
   std::string member;
   std::string meaning;    ///< what it says
@@ -116,13 +115,13 @@ struct VoxelTexels {
   int level = 0;
   float unit = 1.0f;  ///< that the number 1 stands for
 };
-/// Bits in stacks of 128 along z, as BinaryGrid has them; a value is whether the bit is set.
+/// Bits in stacks of 128 along z, as in BinaryGrid; a value is whether the bit is set.
 struct VoxelBits {
   gpu::TextureRef stacks;
   int level = 0;
 };
-/// Items in no order, the first word of each a voxel: i, j, k in 10 bits each. A value is whether there are
-/// some, or how many.
+/// Unordered items. The first word of each is its voxel: i, j, k in 10 bits each. A value is whether a voxel
+/// has items, or their number.
 struct VoxelList {
   gpu::BufferRef items, count;  ///< count: its first word
   std::uint64_t itemBytes = sizeof(std::uint32_t), capacity = 0;
@@ -132,7 +131,7 @@ struct VoxelList {
 };
 /// The value 1 everywhere in the box.
 struct VoxelsFilled {};
-/// Whatever else: voxels and their values, read when they are asked for.
+/// Any other source: voxels and their values, read on request.
 struct VoxelsRead {
   struct Voxel {
     glm::ivec3 voxel{0};
@@ -152,11 +151,10 @@ inline PortCondition radianceUnitCondition() {
           "light is too bright or too dark by this factor"};
 }
 
-/// What of a texture was written: the rest is whatever the memory held before.
+/// The written part of a texture; the rest is undefined.
 struct FilledTexels {
   std::optional<int> levels{};  ///< finest first; none: all that there are
-  /// Of a pool, which has room for more than it holds: of each texel of the finest level, whether it is in
-  /// use; empty: all of them are.
+  /// For a pool with spare room: for each texel of the finest level, whether it is in use; empty: all are.
   std::function<std::vector<bool>()> texels{};
 };
 

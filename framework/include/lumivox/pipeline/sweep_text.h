@@ -58,8 +58,8 @@ struct SweepShare {
 };
 
 /// Every block's pipelines, in text order. Throws DiagnosticsError with all findings: those of the pipelines,
-/// a value that does not fit its parameter, a parameter that no pipeline of the block has. `notes`: which
-/// pipeline goes without which axis.
+/// a value that does not fit its parameter, a parameter that no pipeline of the block has. `notes` names each
+/// pipeline that lacks an axis.
 std::vector<SweepShare> sweepShares(const SweepText& text, TechniqueSource& techniques,
                                     std::vector<std::string>& notes);
 

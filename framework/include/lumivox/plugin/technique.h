@@ -1,6 +1,6 @@
-// The border between the framework and a technique library. The library's file carries a version record in an
-// ELF section of its own; only when that agrees to the byte is the library opened and its one entry point
-// called.
+// The interface between the framework and a technique library. The library's file has a version record in an
+// ELF section of its own. The library is opened, and its one entry point called, only if that record agrees
+// to the byte.
 #pragma once
 
 #include <cstddef>

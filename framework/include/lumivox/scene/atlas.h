@@ -10,8 +10,7 @@
 
 namespace lumivox {
 
-/// A texel that lies on the surface, and where. The place is on the triangle, so that it follows whatever
-/// the triangle does: it turns and deforms with it.
+/// A texel on the surface, with its position on a triangle, so that it moves and deforms with the triangle.
 struct AtlasTexel {
   std::uint16_t x = 0, y = 0;         ///< in the square
   std::uint32_t triangle = 0;         ///< of Scene::indices: its first index divided by three

@@ -1,5 +1,5 @@
-// How a point of a surface finds its texels: the same for the path tracer, for what is made of a scene before
-// a frame, and for the linear, repeating samplers of the shaders.
+// Bilinear look-ups of textures on the host: the same texels and weights as those of the shaders' linear,
+// repeating samplers. For the path tracer and for preprocessing of scenes.
 #pragma once
 
 #include <algorithm>

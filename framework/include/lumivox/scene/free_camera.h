@@ -1,4 +1,4 @@
-// A scene as a camera sees it that is none of its own: somebody flies through it.
+// Snapshots of a scene through a camera that is not one of its own.
 #pragma once
 
 #include "lumivox/scene/scene.h"

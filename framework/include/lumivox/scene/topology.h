@@ -1,4 +1,4 @@
-// How the triangles of an object hang together: what volume they enclose, if any.
+// Connectivity of an object's triangles, and the volume that they enclose, if any.
 #pragma once
 
 #include <cstddef>

@@ -84,8 +84,8 @@ class ShaderLibrary {
   const std::map<std::string, ShaderPack>& packs() const;
   gpu::Device& device();
 
-  /// From now on every program counts what it does: the same results, several times slower. Call it before
-  /// the first program is asked for. AbsentError when the device takes its programs as GLSL.
+  /// Makes every program count its work: the same results, several times slower. Precondition: no program was
+  /// requested yet. AbsentError when the device takes its programs as GLSL.
   void countWork();
   /// The work of all programs since the last call, in operations by name.
   Work takeWork();

@@ -13,12 +13,13 @@
 
 namespace lumivox::shader {
 
-/// In place of a binding's number: that of whatever program has a binding of this name and kind. For bindings
-/// that many shaders have under one name.
+/// In place of a binding's number: the number in the program that is run, by name and kind. For bindings that
+/// many shaders have under one name.
 inline constexpr std::uint32_t kByName = ~0u;
 
-// A slot takes the resource itself, or a reference that may be null: nothing is given then, which is an error
-// only where the variant needs it. Not one that would be gone before the command runs.
+// A slot takes the resource itself, or a reference that may be null. Null binds nothing, which is an error
+// only if the variant needs the binding. Temporaries do not compile: they would be destroyed before the
+// command runs.
 
 struct SampledSlot {
   const char* name;
@@ -69,8 +70,8 @@ struct UniformSlot {
   }
 };
 
-/// The arguments of a command: bindings and sets of them, in braces. Those that the variant does not have are
-/// left out, so that all that is there may be given to every variant.
+/// The arguments of a command: bindings and sets of them, in braces. Bindings that the variant lacks are
+/// dropped, so that the same set fits every variant.
 class BindingSet {
  public:
   class Item {

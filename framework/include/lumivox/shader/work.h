@@ -1,5 +1,5 @@
-// How much a shader did: operations by name. Counted, not declared: every basic block of the SPIR-V gets a
-// counter, so that loops and branches count as often as they were taken.
+// The work of a shader: operations by name, counted by a counter in every basic block of the SPIR-V, so that
+// loops and branches count as often as they ran.
 #pragma once
 
 #include <map>

@@ -17,15 +17,15 @@ inline glm::uvec2 seedWords(const PassContext& frame) {
   return {static_cast<std::uint32_t>(frame.seed()), static_cast<std::uint32_t>(frame.seed() >> 32)};
 }
 
-/// The scene's geometry and materials (common/scene.glsl) for one draw, with a white texture in place of one
-/// that the draw does not have.
+/// The scene's geometry and materials (common/scene.glsl) for one draw. A missing texture is replaced by a
+/// white one.
 class SceneBinding : public shader::BindingSet {
  public:
   SceneBinding(PassContext& frame, const SceneDraw& draw);
   /// For shaders that take several draws at a time: those with these textures (null: none).
   SceneBinding(PassContext& frame, const gpu::Texture* diffuse, const gpu::Texture* mask);
-  /// Values of the shader's axes TEXTURES and MASKS: whether the draw's own material needs them, and always
-  /// with --keep-everything.
+  /// Values of the shader's axes TEXTURES and MASKS: 1 if the draw's material needs them, and with
+  /// --keep-everything.
   int textures = 0, masks = 0;
   /// A generated Variant with those of the two that it has.
   template <class Variant>
@@ -78,7 +78,7 @@ class FragmentBinding : public shader::BindingSet {
   explicit FragmentBinding(const VoxelFragments& list);
 };
 
-/// An invocation for each fragment of a list, which is bound besides; a barrier follows.
+/// Binds a list, and runs one invocation for each of its fragments; a barrier follows.
 void forEachFragment(PassContext& frame, const shader::BoundProgram& program,
                      const shader::BindingSet& bindings, const VoxelFragments& list);
 

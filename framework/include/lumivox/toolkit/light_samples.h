@@ -32,7 +32,7 @@ struct LightView {
   bool used = true;
 };
 
-/// A light as a whole: what a cone to it is aimed at.
+/// The disc of a whole light, at which a cone is aimed.
 struct LightDisc {
   glm::vec3 centre{0.0f};  ///< of an area light: the mean place of its power
   /// That of a disc across which points lie as far from the centre, in the mean of the squares: half a side

@@ -23,7 +23,7 @@ struct LightViews {
 /// but emissive triangles.
 LightViews placeLightViews(PassContext& frame, int areaSamples, int size, int areaSize);
 
-/// A pass that draws what the lights see, with the parameters of that.
+/// The base of passes that draw the scene from each light, with their parameters.
 class LightViewPass : public Pass {
  public:
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
@@ -31,7 +31,8 @@ class LightViewPass : public Pass {
 
  protected:
   LightViewPass(int size, ParamRange<int> sizes, int areaSize, ParamRange<int> areaSizes)
-      : size_(this, "size", size, sizes, "texels along a side of the view of a light without extent"),
+      : size_(this, "size", size, sizes,
+              "texels along a side of each view of a point, spot or directional light"),
         areaSamples_(this, "area_samples", 16, within(1, 1024),
                      "point samples that represent all emissive triangles together"),
         areaSize_(this, "area_size", areaSize, areaSizes,

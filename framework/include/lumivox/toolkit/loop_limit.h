@@ -1,4 +1,4 @@
-// Long loops of shaders in portions that every driver runs to their end.
+// Splits long loops of shaders into portions that every driver runs to the end.
 #pragma once
 
 #include <algorithm>
@@ -6,17 +6,18 @@
 
 namespace lumivox {
 
-/// Turns of all loops of an invocation together: software drivers cut them off, without a word, at 65535.
+/// Limit of the loop iterations of one invocation, all loops together: software drivers end them silently at
+/// 65535.
 inline constexpr int kLoopLimit = 60000;
 
-/// How many of so many items an invocation may take, each with loops of so many turns beside its own one: at
-/// least one, and at most all.
+/// The number of items that one invocation may process, each with so many loop iterations of its own: at
+/// least one, at most all.
 constexpr int portionOf(int items, std::int64_t turnsOfEach) {
   return static_cast<int>(std::clamp<std::int64_t>(kLoopLimit / (turnsOfEach + 1), 1, std::max(items, 1)));
 }
 
-/// Calls `portion(first, count)` for items in a row, each item once, so that an invocation that takes such a
-/// portion keeps to the limit. An item that goes beyond it by itself has a portion to itself.
+/// Calls `portion(first, count)` for consecutive items, each item once, so that an invocation over a portion
+/// keeps to the limit. An item that exceeds the limit by itself has its own portion.
 template <class Portion>
 void forEachPortion(int items, std::int64_t turnsOfEach, Portion&& portion) {
   const int most = portionOf(items, turnsOfEach);

@@ -1,4 +1,4 @@
-// Room on the device, or in words what would fit.
+// Checks that memory on the device suffices, with an error that says what would fit.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace lumivox {
 
-/// Why so many bytes cannot be had, in as many buffers as they need; empty where they can. They are given
-/// back at once.
+/// Allocates so many bytes, in as many buffers as they need, and frees them at once. Returns why it failed;
+/// empty on success.
 std::string whyNoRoom(PassContext& frame, std::uint64_t bytes);
 
-/// Error where `items` of something do not fit, before anything of it is taken: it says how many bytes they
-/// need, and of numbers halved from theirs the largest that fits. `bytesOf`: of each buffer or texture that
-/// so many items take; `what`: in the plural.
+/// Error, before any allocation, if `items` of something do not fit: it says how many bytes they need, and
+/// the largest number, by repeated halving, that fits. `bytesOf`: bytes of each buffer or texture for so many
+/// items; `what`: in the plural.
 void requireRoom(PassContext& frame, int items, const std::function<std::vector<std::uint64_t>(int)>& bytesOf,
                  const std::string& what);
 

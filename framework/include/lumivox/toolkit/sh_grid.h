@@ -1,4 +1,4 @@
-// Light in an ShGrid, as passes read it: only after what tells how to read it was looked at.
+// Reads light in an ShGrid, after checking the members that say how to read it.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace lumivox {
 
-/// What a pass takes of an ShGrid; anything else is refused.
+/// The ShGrids that a pass can read; others are refused.
 struct ShReading {
   enum class Unit { one, any };
   ShGrid::Quantity quantity = ShGrid::Quantity::radiance;
@@ -16,7 +16,7 @@ struct ShReading {
   Unit unit = Unit::one;
   /// Which voxels the pass reads, in words of ShGrid::readFor; empty: it may read all of them.
   std::string voxels{};
-  /// How a user gets a grid with values in all voxels: told where one with some is refused.
+  /// Advice in the error for a grid with values in some voxels only: how to get one with values in all.
   std::string remedy{};
 };
 
@@ -25,8 +25,8 @@ struct ShLight {
   float unit = 1.0f;                      ///< that the number 1 stands for, in W/sr or W/(sr m^2)
 };
 
-/// The light of an input that is present. Error, with the names of both sides, where its quantity, its unit
-/// or the voxels that hold values are not what the pass takes.
+/// The light of a present input. Error, with the names of both passes, if its quantity, its unit or its
+/// filled voxels do not fit the reading.
 ShLight readShGrid(const In<ShGrid>& input, const ShReading& reading);
 
 /// The three colour channels of a level under the names red, green and blue. GLSL side:

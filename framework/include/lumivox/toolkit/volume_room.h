@@ -1,4 +1,4 @@
-// Volumes of voxels, or in words what would fit.
+// Volumes of voxels, or an error that says what would fit.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace lumivox {
 
-/// `count` volumes of a size, with all mips or with the finest level alone, of undefined contents. Where they
-/// do not fit, nothing of them is taken, and the Error says how many bytes `what` needs, and of sizes halved
-/// from it the largest that fits.
+/// `count` volumes of a size, with all mips or the finest level alone, with undefined contents. If they do
+/// not fit, nothing is allocated, and the Error says how many bytes `what` needs and the largest size, by
+/// repeated halving, that fits.
 std::vector<gpu::TextureRef> roomFor(PassContext& frame, const glm::ivec3& size, int count,
                                      gpu::Format format, const char* label, bool mips,
                                      const std::string& what);

@@ -18,13 +18,13 @@ gpu::BufferRef countBuffer(PassContext& frame, const char* label);
 /// Where the arguments of the dispatch lie in it.
 inline constexpr std::uint64_t kGroupsOffset = sizeof(std::uint32_t);
 
-/// Turns a number of items into the arguments of a dispatch over them, so many to a group. What there is no
-/// room for is cut off, and can be told from the number that was wanted.
+/// Turns a number of items into the arguments of a dispatch over them, in groups of a given size. Items
+/// beyond the room are cut off; the wanted number stays readable.
 void finishCount(PassContext& frame, const shader::BoundProgram& finish, const gpu::BufferRef& count,
                  std::uint64_t capacity, int itemsOfGroup = kCountedGroupSize);
-/// The same where `room` behind the first `base` items was a guess: a frame that wanted more is made anew
-/// with an eighth more than it needs. With `repeats`, where later frames will need as much as this one, the
-/// room becomes as much as that. Error for more than a list can hold.
+/// The same if `room` behind the first `base` items was a guess: a frame that wanted more is rendered again
+/// with an eighth more than it needs. With `repeats`, for later frames of the same need, the room becomes
+/// exactly that. Error for more than a list can hold.
 void finishGuessed(PassContext& frame, const shader::BoundProgram& finish, const gpu::BufferRef& count,
                    std::uint64_t capacity, std::uint64_t base, std::uint64_t& room, bool repeats = false);
 /// Error for a list of more fragments than shaders can number.
@@ -44,8 +44,7 @@ struct SlotPrograms {
   const shader::BoundProgram &claim, &number, &finish;
 };
 
-/// Slots for the voxels of a list. `room`, 0 at first, stays with the pass: a guess, or what earlier frames
-/// needed.
+/// Slots for the voxels of a list. The pass keeps `room`, 0 at first: a guess, or the need of earlier frames.
 VoxelSlots claimSlots(PassContext& frame, const VoxelFragments& list, const SlotPrograms& programs,
                       std::uint64_t& room);
 

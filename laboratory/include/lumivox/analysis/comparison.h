@@ -13,10 +13,10 @@
 
 namespace lumivox {
 
-/// The metric that pipelines are compared by unless another is asked for. FLIP ends at 1 in every pixel, so
-/// that no handful of bright pixels decides, and needs no choice of exposure (docs/metrics.md).
+/// The default metric for comparing pipelines. FLIP is at most 1 in every pixel, so that a few bright pixels
+/// do not dominate, and needs no choice of exposure (docs/metrics.md).
 inline constexpr const char* kDefaultMetric = "flip";
-/// What its number means, beside every first number of it: on pages, in the terminal, in docs/metrics.md.
+/// The meaning of its number, shown at its first use on pages, in the terminal and in docs/metrics.md.
 inline constexpr const char* kDefaultMetricSays =
     "HDR-FLIP: 0 where a viewer sees no difference, 1 at most; a ramp of greys made 2 %, 10 % and 50 % "
     "brighter has 0.04, 0.12 and 0.34.";
@@ -66,7 +66,7 @@ struct PipelineComparison {
   std::vector<FrameTimeRange> ranges;
   double timeShare = kSignificantTimeShare;  ///< that times must be apart
   int controls = 0;                          ///< that say so; 0: it is kSignificantTimeShare
-  /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
+  /// Points whose time or error has too few repeats or seeds for a claim: they neither beat nor are beaten.
   std::size_t undecided = 0;
   /// Pipelines that are not among these, and the one that each comes to the same passes as: samePipelines().
   std::map<std::string, std::string> same;

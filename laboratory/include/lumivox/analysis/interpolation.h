@@ -1,5 +1,5 @@
-// Equal time and equal error: what a pipeline reaches between the points that were measured, and how sure
-// that is. Pure functions.
+// Equal time and equal error: interpolation between measured points of a pipeline, with uncertainties. Pure
+// functions.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ std::vector<std::size_t> frontByValue(const std::vector<TradeOff>& points);
 
 /// A difference counts as significant beyond this many standard uncertainties of it.
 inline constexpr double kSignificantSigmas = 3.0;
-/// And, for times, beyond this share, or beyond what repeated controls show where that is more (TimeFloor):
-/// quartiles of a few repeats say little about a machine's mood.
+/// For times, also beyond this share, or beyond the difference of repeated controls if that is more
+/// (TimeFloor): quartiles of a few repeats do not show slow changes of the machine.
 inline constexpr double kSignificantTimeShare = 0.05;
 
 /// Whether both have the repeats that any claim about their difference needs.
@@ -47,9 +47,9 @@ std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& po
 /// first. None: there is no candidate.
 std::optional<std::size_t> leastOf(const std::vector<TradeOff>& points,
                                    const std::vector<std::size_t>& candidates, Measured TradeOff::*number);
-/// What is chosen where one number has a limit and the other, `number`, is to be least: of the candidates
-/// that cannot be told apart from the least (decidable() and not differ(), for times by `timeShare` too), the
-/// one with the least of the number that has the limit.
+/// The choice where one number has a limit and the other, `number`, is to be least: among the candidates
+/// within the uncertainty of the least (decidable() and not differ(), for times by `timeShare` too), the one
+/// with the least of the limited number.
 std::optional<std::size_t> leastWithinNoise(const std::vector<TradeOff>& points,
                                             const std::vector<std::size_t>& candidates,
                                             Measured TradeOff::*number,

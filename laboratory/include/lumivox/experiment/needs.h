@@ -1,4 +1,4 @@
-// Parts of pipelines that scenes really needed: each pipeline on each scene, with and without leaving out.
+// The parts of pipelines that scenes needed: each pipeline on each scene, pruned and unpruned.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// The main job: every pipeline at every point of its sweep, error and time apart, one record.
+// The report: every pipeline at every point of its sweep, errors and times measured separately, in one
+// record.
 #pragma once
 
 #include <filesystem>
@@ -61,9 +62,9 @@ struct ReportSummary {
   std::vector<PruningRecord> pruning;
   std::vector<std::pair<std::string, Display>> displays;  ///< of the images of each scene
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
-  /// For which there was no time: points; pipelines of which what leaving out saves was not timed.
+  /// Left out by the budget: points; pipelines whose saving by leaving out was not timed.
   std::size_t leftOutPoints = 0, leftOutPrunings = 0;
-  /// The least budget with which another point begins, s, where this one began none; else 0.
+  /// If this budget began no point: the smallest budget that begins one, s; otherwise 0.
   double neededSeconds = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// Measuring many points into a results store, so that a later run only does what is missing.
+// Measures many points into a results store, so that a later run measures only missing ones.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What slow tests measured, as cards and guides quote it.
+// Tables of slow tests, as cards and guides quote them.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Which pixels of an image show a lamp or the sky: what exposure leaves out.
+// The pixels of an image that show a lamp or the sky, which exposure leaves out.
 #pragma once
 
 #include <vector>

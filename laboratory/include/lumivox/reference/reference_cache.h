@@ -1,4 +1,4 @@
-// The references that are kept for later: what there is, and what goes when they take too much.
+// The cache of references: its entries, and their removal when they exceed a limit.
 #pragma once
 
 #include <chrono>

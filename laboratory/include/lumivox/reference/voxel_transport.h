@@ -1,6 +1,6 @@
-// The reference of the boxes: light over surfaces that are the boxes of set voxels, by plain Monte Carlo on
-// Embree. A technique that sends rays through voxels differs from it by noise alone, and it from the
-// triangles by what voxels make of them. What a box reflects, and how bright it is, the caller says.
+// Reference for voxels: light transport over the boxes of set voxels, by plain Monte Carlo on Embree. A
+// technique that sends rays through voxels differs from it only by noise, and it differs from the triangles
+// only by the voxelization. The caller gives the reflectance and radiance of a box.
 #pragma once
 
 #include <cstdint>

@@ -112,7 +112,7 @@ struct CostParts {
 };
 CostParts costParts(const ReportPoint& point);
 
-/// The saving by leaving out, measured: the pruned and the unpruned pipeline timed alternately in one run.
+/// The measured saving by leaving out: the pruned and the unpruned pipeline, timed alternately in one run.
 struct PruningRecord {
   std::string scene, pipeline;
   Explanation explanation;                        ///< savedMs is filled in for passes
@@ -126,8 +126,8 @@ struct PruningRecord {
   bool sameImage = false;                            ///< bit for bit: the law of leaving out
 
   double savedShare() const;  ///< by leaving out: of the unpruned time of a first frame, 0..1
-  /// By what stands still: of the pruned time of a first frame, what a later one with a moving camera does
-  /// not take.
+  /// By standing still: the share of a pruned first frame's time that a later frame under a moving camera
+  /// saves.
   double standingShare() const;
 };
 

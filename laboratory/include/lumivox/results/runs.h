@@ -43,14 +43,14 @@ struct StoredRun {
   ReportPoint point;       ///< `command` repeats it; a point with `failure` has no numbers
 };
 
-/// The times of a stored run measured once more, later: what differs is the machine's mood alone.
+/// The times of a stored run measured once more, later: any difference is variation of the machine.
 struct RepeatedControl {
   std::string created;            ///< "2015-10-21 16:29:00 UTC"
   Measured frameMs, nextFrameMs;  ///< of the run
   Measured frameMsAgain, nextFrameMsAgain;
 };
 
-/// How far apart two times of the same thing were found on one machine, as a share of the smaller.
+/// The largest difference between repeated times of the same run on one machine, as a share of the smaller.
 struct TimeFloor {
   double frame = 0.0, nextFrame = 0.0;
   int controls = 0;  ///< that say so; 0: not examined

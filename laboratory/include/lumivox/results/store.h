@@ -46,7 +46,7 @@ struct CellFilter {
   bool everything() const;
 };
 
-/// How much a store took over from another.
+/// The numbers of records that a store took over from another.
 struct MergeCount {
   std::size_t runs = 0, cells = 0, peakRates = 0;
 };

@@ -15,18 +15,18 @@ struct AttributeGrid {
 template <>
 struct PortTraits<AttributeGrid> {
   static PortKind kind() {
-    return {
-        "AttributeGrid",
-        "averages over the surface in each voxel",
-        {{"albedo", "d3 rgba16f", "rgb mean diffuse albedo, a covered fraction (0: no surface)"},
-         {"normal", "d3 rgba16f", "xyz mean of the unit normals, not normalised: short where they disagree",
-          PortResource::Sign::any},
-         {"emission", "d3 rgba32f", "rgb mean emitted radiance; null when nothing emits"}},
-        {{"albedo", "mean diffuse albedo of the surface in the voxel", "1"},
-         {"coverage", "covered fraction", "1", PortField::Role::fog},
-         {"normal", "mean of the unit normals, not normalised", "1", PortField::Role::direction},
-         {"emission", "mean emitted radiance", "W/(sr m^2)"}},
-        "voxels with a covered fraction above 0"};
+    return {"AttributeGrid",
+            "averages over the surface in each voxel",
+            {{"albedo", "d3 rgba16f", "rgb mean diffuse albedo; a covered fraction (0: no surface)"},
+             {"normal", "d3 rgba16f",
+              "xyz mean of the unit normals, not normalised, so that its length shows how far they agree",
+              PortResource::Sign::any},
+             {"emission", "d3 rgba32f", "rgb mean emitted radiance; null when nothing emits"}},
+            {{"albedo", "mean diffuse albedo of the surface in the voxel", "1"},
+             {"coverage", "covered fraction", "1", PortField::Role::fog},
+             {"normal", "mean of the unit normals, not normalised", "1", PortField::Role::direction},
+             {"emission", "mean emitted radiance", "W/(sr m^2)"}},
+            "voxels with a covered fraction above 0"};
   }
   static void contents(const AttributeGrid& port, PortContents& contents) {
     contents.texture("albedo", port.albedo);

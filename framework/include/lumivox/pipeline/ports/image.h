@@ -7,7 +7,7 @@ namespace lumivox {
 /// An image-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
 struct Image {
   gpu::TextureRef texture;
-  /// False: fractions, counts, colours that stand for something; pictures show them as they are, unexposed.
+  /// False: fractions, counts or colour codes; they are displayed without exposure.
   bool radiance = true;
 };
 
@@ -19,8 +19,8 @@ struct PortTraits<Image> {
             {{"texture", "d2 rgba16f or rgba32f", "radiance in W/(sr m^2) in rgb; ambient occlusion in r"}},
             {},
             {},
-            {{"radiance", "false: fractions, counts or colours that stand for something, in place of light",
-              "they are exposed as if they were light", "that show it"}}};
+            {{"radiance", "false: fractions, counts or colour codes instead of light",
+              "they are exposed like light", "that show it"}}};
   }
   static void contents(const Image& port, PortContents& contents) {
     contents.texture("texture", port.texture);

@@ -7,7 +7,7 @@
 
 namespace lumivox {
 
-/// Where in a volume anything is: a list of its occupied bricks, in no order.
+/// The occupied bricks of a volume, unordered.
 struct OccupiedBricks {
   static constexpr int kSide = 4;  ///< finest voxels along a side of a brick
   gpu::BufferRef bricks;           ///< words: i, j, k of each brick, in 10 bits each
@@ -20,11 +20,10 @@ struct OccupiedBricks {
   }
 };
 
-/// A volume that its pass changes where it lies: what of its finest level differs from what the run before
-/// left.
+/// A volume that its pass updates in place: the part of its finest level that differs from the previous run.
 struct ChangedBricks {
-  /// What the coarser levels in the same textures were made by, and from which run. It is held, so that
-  /// nothing else can pass for it.
+  /// The maker of the coarser levels in the same textures, and the run that they are made from. Holding the
+  /// pointer keeps its address unique.
   struct Levels {
     std::shared_ptr<const void> by;
     std::uint64_t number = 0;
@@ -32,8 +31,8 @@ struct ChangedBricks {
   std::shared_ptr<Levels> levels;  ///< those of these textures; null: every run makes the volume anew
   std::uint64_t number = 0;        ///< of the run, one more than that of the run before
   OccupiedBricks bricks;           ///< bricks that are empty by now are among them; null members: all
-  /// Whether `by` made the coarser levels of the run before, so that only what lies above these bricks
-  /// differs. From now on they are those of this run.
+  /// Whether `by` made the coarser levels of the previous run, so that only voxels above these bricks differ.
+  /// Records `by` as the maker for this run.
   bool continues(const std::shared_ptr<const void>& by) const {
     const bool result = levels->by == by && levels->number + 1 == number && bricks.bricks != nullptr;
     *levels = {by, number};
@@ -47,8 +46,8 @@ struct RadianceGrid {
   gpu::TextureRef radiance;
   float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 0;  ///< mip levels that hold values, finest first; 0: all that the texture has
-  /// The meaning of a coarser voxel's opacity: that of the whole voxel, as seen through; or of a path of one
-  /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
+  /// The meaning of a coarser voxel's opacity: across the whole voxel; or along a path of one finest voxel's
+  /// length in it, which the mean of the children gives for a uniform medium.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
   int bounces = 1;          ///< times that the light was reflected
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
@@ -64,19 +63,18 @@ struct PortTraits<RadianceGrid> {
         "RadianceGrid",
         "outgoing radiance and opacity per voxel, one mip per halving",
         {{"radiance", "d3 rgba16f or rgba32f with mips", "rgb radiance * opacity / unit, a opacity"},
-         {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4, in 10 bits each; or null"},
-         {"count", "buffer", "how many; then indirect dispatches over their voxels; or null"}},
+         {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4 voxels, in 10 bits each; or null"},
+         {"count", "buffer", "number of bricks; then indirect dispatches over their voxels; or null"}},
         {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
          {"opacity", "opacity", "1", PortField::Role::fog}},
         {},
         {radianceUnitCondition(),
          {"filledLevels", "mip levels that hold values, finest first; 0: all that the texture has",
-          "memory that nobody wrote is taken for light", "of coarser levels"},
+          "undefined memory is read as light", "of coarser levels"},
          {"opacity",
-          "whether the opacity of a coarser voxel is that of the whole voxel, or that of a way of one finest "
-          "voxel in it",
-          "coarser voxels hide too much or too little", "of coarser levels"},
-         {"holdsMedia", "whether participating media are in the voxels beside the surfaces",
+          "whether the opacity of a coarser voxel is that across the whole voxel, or along a path of one finest voxel in it",
+          "coarser voxels are too opaque or too transparent", "of coarser levels"},
+         {"holdsMedia", "whether the voxels hold participating media beside the surfaces",
           "media count twice", "that see through media besides"}}};
   }
   static void contents(const RadianceGrid& port, PortContents& contents) {

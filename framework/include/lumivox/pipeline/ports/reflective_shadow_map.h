@@ -22,14 +22,14 @@ struct PortTraits<ReflectiveShadowMap> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     return {"ReflectiveShadowMap",
-            "what each light sees: every texel is a small light",
+            "the surfaces that each light sees: every texel is a small light",
             {{"lights", "buffer", "array of LightSample in shaders/common/lights.glsl"},
              {"views", "buffer", "mat4 per layer: world to light clip space"},
-             {"position", "d2Array rgba32f", "posWorld; w = 1 where something was hit, else 0", kAny},
+             {"position", "d2Array rgba32f", "posWorld; w = 1 on a surface, else 0", kAny},
              {"normal", "d2Array rgba32f",
-              "unit normal towards the light; w = the area of surface that the texel stands for, m^2", kAny},
+              "unit normal towards the light; w = the surface area that the texel covers, m^2", kAny},
              {"flux", "d2Array rgba32f",
-              "diffusely reflected flux of the texel, W; w = the layer's light as a number"}}};
+              "diffusely reflected flux of the texel, W; w = number of the layer's light"}}};
   }
   static void contents(const ReflectiveShadowMap& port, PortContents& contents) {
     contents.buffer("lights", port.lights);

@@ -24,8 +24,8 @@ struct ShGrid {
   std::vector<Level> levels;  ///< finest and smallest first
   Quantity quantity = Quantity::flux;
   float unit = 1.0f;  ///< that the number 1 stands for, in W/sr or W/(sr m^2)
-  /// Whose reading was known before, where only the voxels that it touches hold their values and the others
-  /// are 0: in words of the technique, which whoever reads otherwise must refuse. Empty: all voxels do.
+  /// The one reading whose voxels hold their values, in words of the technique, while all others are 0; a
+  /// pass that reads otherwise must refuse the grid. Empty: all voxels hold their values.
   std::string readFor;
 };
 
@@ -44,19 +44,17 @@ struct PortTraits<ShGrid> {
     PortKind kind{"ShGrid",
                   "flux or radiance per voxel as spherical harmonics up to band 1, in nested grids",
                   {{"red", shape, "Y00, Y1-1, Y10, Y11", kAny},
-                   {"green", shape, "the same; null: as red", kAny},
-                   {"blue", shape, "the same; null: as red", kAny}}};
+                   {"green", shape, "as red; null: equal to red", kAny},
+                   {"blue", shape, "as red; null: equal to red", kAny}}};
     kind.conditions = {
         {"quantity",
-         "flux: the coefficients are of an intensity, W/sr, that a voxel sends or that passes it, which grows with "
-         "the voxel's face; radiance: of the radiance there, W/(sr m^2)",
+         "flux: coefficients of the intensity, W/sr, that a voxel sends or that passes it, which grows with the voxel's face; radiance: coefficients of the radiance there, W/(sr m^2)",
          "light depends on the size of the voxels"},
         {"unit", "the value that the number 1 stands for, W/sr or W/(sr m^2)",
          "light is too bright or too dark by this factor"},
         {"readFor",
-         "the one reading, in words of the technique, whose voxels hold their values, while all others are 0; empty: "
-         "all voxels hold theirs",
-         "light is missing wherever other voxels are read"}};
+         "the one reading, in words of the technique, whose voxels hold values, while all others are 0; empty: all voxels hold values",
+         "light is missing where other voxels are read"}};
     for (const char* harmonic : {"Y00", "Y1-1", "Y10", "Y11"})
       kind.fields.push_back({harmonic, quantity + std::string(harmonic) + " for red, green and blue", unit});
     return kind;

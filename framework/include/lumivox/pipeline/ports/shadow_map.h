@@ -19,10 +19,10 @@ template <>
 struct PortTraits<ShadowMap> {
   static PortKind kind() {
     return {"ShadowMap",
-            "all direct light as point samples, and their visibility",
+            "all direct light as point samples, with their visibility",
             {{"lights", "buffer", "array of LightSample in shaders/common/lights.glsl"},
              {"views", "buffer", "mat4 per layer: world to light clip space"},
-             {"depth", "d2Array depth32f", "depth seen from each light, a layer a view"}}};
+             {"depth", "d2Array depth32f", "depth seen from each light, one layer for each view"}}};
   }
   static void contents(const ShadowMap& port, PortContents& contents) {
     contents.buffer("lights", port.lights);

@@ -4,7 +4,7 @@
 
 namespace lumivox {
 
-/// Small lights on surfaces: discs that reflect diffusely to one side. One without flux is none.
+/// Small lights on surfaces: discs that reflect diffusely to one side. A disc without flux is no light.
 struct SurfaceLights {
   gpu::BufferRef lights;
   int count = 0;

@@ -10,21 +10,21 @@ struct VoxelFragments {
   GridPlacement grid;
   gpu::BufferRef fragments;
   gpu::BufferRef count;
-  /// Direct light that fragments are known to reflect, as a renderer computed it where the camera sees them
-  /// (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first fragments: the
-  /// radiance in W/(sr m^2) that leaves the side seen (`kSeenBehind` in shaders/common/voxel.glsl), packed as
-  /// `packShared` does, or kNotKnown, as behind the buffer's end. Lights shine on the other side.
+  /// Direct light that fragments are known to reflect, as a renderer computed it at visible surfaces
+  /// (Mavridis & Papaioannou 2011, Sec. 3.2). Null: known for none. Otherwise a word for each of the first
+  /// fragments: the radiance in W/(sr m^2) that leaves the visible side (`kSeenBehind` in
+  /// shaders/common/voxel.glsl), packed by `packShared`, or kNotKnown; fragments beyond the buffer's end are
+  /// not known. The other side is lit by the lights.
   gpu::BufferRef reflected;
   static constexpr std::uint32_t kNotKnown = 0xffffffffu;
-  /// Where some of the scene moves and some stands still: the first fragments are those of what stands still,
-  /// as `count`, and `moving` counts those behind them. While `still` is the same buffer, its fragments are
-  /// the same, in the same places; who holds it holds the proof. Null: not known apart.
+  /// In a scene with static and moving geometry: `still` counts the static fragments, which come first, and
+  /// `moving` those behind them. While `still` is the same buffer, its fragments and their places are
+  /// unchanged; a reader may hold the pointer to compare. Null: not separated.
   gpu::BufferRef still, moving;
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
-  /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
-  /// itself, less than 1 only where a mask has holes), or their sum up to 1 (each covers a part of the
-  /// voxel).
+  /// How the coverages of the fragments in one voxel give its opacity: by their mean (each is less than 1
+  /// only where a mask has holes), or by their sum up to 1 (each covers a part of the voxel).
   enum class Coverage { mean, sum } coverage = Coverage::mean;
 
   /// Where the arguments of the indirect dispatch lie in `count`.
@@ -39,19 +39,18 @@ struct PortTraits<VoxelFragments> {
         "an unordered list of surface samples, one per triangle and voxel that it touches",
         {{"fragments", "buffer", "array of VoxelFragment in shaders/common/voxel.glsl"},
          {"count", "buffer", "words: fragments written; then x, y, z of an indirect dispatch over them"},
-         {"reflected", "buffer", "a word a fragment: direct light that it is known to reflect; or null"},
-         {"still", "buffer", "as count, of the first fragments, those of what does not move; or null"},
-         {"moving", "buffer", "as count, of those behind them; or null"}},
+         {"reflected", "buffer",
+          "a word for each fragment: direct light that it is known to reflect; or null"},
+         {"still", "buffer", "as count, for the first fragments, which are static; or null"},
+         {"moving", "buffer", "as count, for the moving fragments behind them; or null"}},
         {{"occupancy", "whether a surface touches the voxel", "1"},
          {"fragments", "surface samples in the voxel", "1"}},
-        "voxels with a fragment that covers anything of them",
+        "voxels with a fragment of coverage above 0",
         {{"reflected",
-          "direct light that the first fragments are known to reflect to the side seen, null: of none; kNotKnown "
-          "where a reader lights the fragment itself",
-          "light that a renderer computed is computed again, by other rules", "that light fragments"},
+          "direct light that the first fragments are known to reflect to the visible side; null: known for none; kNotKnown: the reader lights the fragment itself",
+          "light that is already known is computed again, in another way", "that light fragments"},
          {"coverage",
-          "whether the coverages of the fragments in one voxel make its opacity by their mean, or by their sum "
-          "up to 1",
+          "whether the opacity of a voxel is the mean of its fragments' coverages, or their sum up to 1",
           "voxels are too open or too closed", "that make opacities"}}};
   }
   static void contents(const VoxelFragments& port, PortContents& contents) {
