@@ -15,7 +15,7 @@ std::string data(const std::string& name) {
 }
 
 CommandResult check(const std::string& name) {
-  return runCommand("lumivox check " + data(name));
+  return typed("check", data(name));
 }
 
 /// The sweep of small.sweep at the least cost.
@@ -57,7 +57,7 @@ TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
   std::size_t seen = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     INFO(entry.path());
-    const CommandResult result = runCommand("lumivox check '" + entry.path().string() + "'");
+    const CommandResult result = typed("check", entry.path());
     INFO(result.errors);
     CHECK(result.exitCode == 0);
     const dsl::Document document = dsl::parse(readFile(entry.path()), entry.path());
@@ -69,11 +69,11 @@ TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
 }
 
 TEST_CASE("describe knows the words of sweeps, and a text without a name is told by its blocks") {
-  CHECK(contains(runCommand("lumivox describe sweep").output, "scenes [...] pipelines [...]"));
-  CHECK(contains(runCommand("lumivox describe seeds").output, "a run of its own"));
+  CHECK(contains(typed("describe sweep").output, "scenes [...] pipelines [...]"));
+  CHECK(contains(typed("describe seeds").output, "a run of its own"));
   const Workplace place;
   place.write("unnamed", "sweep s { scenes [\"room.scene\"]  pipelines [\"none.pipeline\"] }\n");
-  checkRefused(runCommand("lumivox check '" + place.file("unnamed") + "'"), "none.pipeline");
+  checkRefused(typed("check", place.file("unnamed")), "none.pipeline");
 }
 
 TEST_CASE("one text measures scenes by pipelines by parameters by seeds, and the same text again nothing") {

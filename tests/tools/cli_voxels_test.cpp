@@ -31,8 +31,8 @@ std::uint64_t shellOf(std::uint64_t side) {
 
 CommandResult measure(const Workplace& place, const std::string& more) {
   place.write("voxels.pipeline", kVoxels);
-  return runCommand("lumivox -q voxels '" + place.scene() + "' --repeats 1 --pipelines '" +
-                    place.file("voxels.pipeline") + "' " + more);
+  return typed("-q voxels", place.scene(), "--repeats 1 --pipelines", place.file("voxels.pipeline"),
+               Raw{more});
 }
 
 VoxelizerOptions committedConservative(std::vector<int> resolutions) {
@@ -220,8 +220,8 @@ TEST_CASE("a pipeline without voxels and one without a resolution are passed ove
   CHECK(result.exitCode == 0);
   CHECK(contains(unwrapped(result.output), "other, resolution 16: it makes no voxels"));
   CHECK(contains(unwrapped(result.output), "fixed, resolution 16: it has no parameter 'resolution'"));
-  const CommandResult none = runCommand("lumivox -q voxels '" + place.scene() +
-                                        "' --repeats 1 --pipelines '" + place.file("fixed.pipeline") + "'");
+  const CommandResult none =
+      typed("-q voxels", place.scene(), "--repeats 1 --pipelines", place.file("fixed.pipeline"));
   CHECK(none.exitCode == 1);
   // Beyond what a text allows, that voxelizer alone has no numbers.
   place.write("small.pipeline",

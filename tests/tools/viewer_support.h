@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <string>
 
 #include "lumivox/base/image.h"
@@ -49,12 +50,35 @@ inline std::string windowCommand(const std::string& options) {
   return "'" + (binaryDirectory() / "bin/lumivox-view").string() + "' " + options;
 }
 
+inline std::string quotedFile(const Workplace& place, const std::string& name) {
+  return "\"" + place.file(name) + "\"";
+}
+
+/// A script whose files, in single quotes, lie in the workplace.
+inline std::string scriptOf(const Workplace& place, const std::string& script) {
+  static const std::regex file("'([^']*)'");
+  return std::regex_replace(script, file, "\"" + place.path().string() + "/$1\"");
+}
+
 /// The little room with a pipeline in a window, and what a script does there.
 inline CommandResult shown(const Workplace& place, const std::string& script, const std::string& pipeline,
                            const std::string& options = "--resolution 24x16") {
-  place.write("script.view", "view \"a test\" {\n" + script + "\n}\n");
+  place.write("script.view", "view \"a test\" {\n" + scriptOf(place, script) + "\n}\n");
   return runCommand(windowCommand("'" + place.scene() + "' '" + pipeline + "' " + options + " --script '" +
                                   place.file("script.view") + "'"));
+}
+/// The same of a script that must end well.
+inline CommandResult showed(const Workplace& place, const std::string& script, const std::string& pipeline,
+                            const std::string& options = "--resolution 24x16") {
+  CommandResult result = shown(place, script, pipeline, options);
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  return result;
+}
+
+/// What `record` wrote.
+inline Json recordOf(const Workplace& place, const std::string& name) {
+  return Json::parse(place.read(name));
 }
 
 /// What happens in the window, without one.
@@ -64,10 +88,6 @@ inline std::unique_ptr<viewer::Session> sessionOf(const std::string& scene, cons
   options.pipelines = {std::filesystem::exists(pipeline) ? pipeline : committedPipeline(pipeline)};
   options.techniques = {binaryDirectory() / "lib/techniques"};
   return std::make_unique<viewer::Session>(options, [] {});
-}
-
-inline std::string quotedFile(const Workplace& place, const std::string& name) {
-  return "\"" + place.file(name) + "\"";
 }
 
 /// The value of a row of a panel in a record.
