@@ -52,34 +52,6 @@ TEST_CASE("faces of the octree's voxels are those of six directional grids, at e
     }
 }
 
-TEST_CASE("what is exported of an octree of six faces is what six grids export") {
-  const Scene scene = cornell();
-  const DirectionalRadianceGrid dense = filteredDirections(injectedDirections(scene, 16));
-  const RadianceOctree sparse = filteredOctree(injectedOctree(scene, 16, {}, "six"));
-  PortContents contents(portKind<RadianceOctree>());
-  PortTraits<RadianceOctree>::contents(sparse, contents);
-  REQUIRE(contents.fields().size() == 7u * static_cast<std::size_t>(sparse.tree.depth + 1));
-  for (const PortContents::Field& field : contents.fields()) {
-    const auto found = std::get<VoxelsRead>(field.source).read();
-    std::map<Cell, glm::vec3> expected;
-    if (field.name == "opacity_along") {
-      for (int axis = 0; axis < 3; ++axis)
-        for (const auto& [voxel, value] : voxelsOf(dense, 2 * axis, field.level))
-          expected[voxel][axis] = value.w;
-    } else {
-      for (int face = 0; face < 6; ++face)
-        if (field.name == std::string("radiance_") +
-                              PortTraits<DirectionalRadianceGrid>::kFaces[static_cast<std::size_t>(face)])
-          for (const auto& [voxel, value] : voxelsOf(dense, face, field.level))
-            expected[voxel] = dense.unit * glm::vec3(value);
-    }
-    CAPTURE(field.name, field.level);
-    REQUIRE(!expected.empty());
-    CHECK(found.size() == expected.size());
-    for (const auto& [voxel, value] : found) CHECK(expected.at(cellOf(voxel)) == value);
-  }
-}
-
 TEST_CASE("six faces are refused where voxels do not lie as in a grid, and by rules that have no sides") {
   const VoxelFragments list = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
   for (const char* voxels : {"at_corners", "in_leaves"})

@@ -335,31 +335,6 @@ TEST_CASE("a steady frame waits for no count of the octree") {
   CHECK(device().transfers().stalls == before);
 }
 
-TEST_CASE("what is exported of an octree are its levels, each voxel once, where the dense grid has it") {
-  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing");
-  PortContents contents(portKind<RadianceOctree>());
-  PortTraits<RadianceOctree>::contents(sparse, contents);
-  REQUIRE(contents.fields().size() == 2u * static_cast<std::size_t>(sparse.tree.depth + 1));
-  for (const PortContents::Field& field : contents.fields()) {
-    const auto& read = std::get<VoxelsRead>(field.source);
-    std::set<Cell> seen;
-    double sum = 0.0, expected = 0.0;
-    for (const auto& [voxel, value] : read.read()) {
-      CHECK(seen.insert(cellOf(voxel)).second);
-      CHECK(glm::all(glm::lessThan(voxel, field.box.resolution)));
-      sum += value.x;
-    }
-    const std::size_t channel = field.name == "opacity" ? 3 : 0;
-    const std::vector<float> texels = dense.radiance->downloadFloats(field.level);
-    for (std::size_t i = channel; i < texels.size(); i += 4)
-      expected += texels[i] * (channel == 0 ? dense.unit : 1.0f);
-    CAPTURE(field.name, field.level);
-    CHECK(sum == Approx(expected).epsilon(1e-5));
-    CHECK(glm::distance(field.box.low, glm::dvec3(dense.grid.low)) < 1e-6);
-    CHECK(field.box.voxelSize.x == Approx(dense.grid.voxelSize * (1 << field.level)));
-  }
-}
-
 TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
   {
     const Scene scene = emptyScene();

@@ -293,6 +293,46 @@ TEST_CASE("further bounces in octrees are those of grids with as many faces") {
   CHECK(sparse > 1.2 * once);
 }
 
+TEST_CASE(
+    "what is exported of an octree is what grids with as many faces hold, each voxel once, in its place") {
+  const bool six = GENERATE(false, true);
+  const int resolution = six ? 16 : 32;
+  const octree::RadianceOctree sparse =
+      octree::filteredOctree(octree::injectedOctree(cornell(), resolution, {}, six ? "six" : "one"));
+  const auto check = [&](const auto& dense, int faces) {
+    PortContents contents(portKind<octree::RadianceOctree>());
+    PortTraits<octree::RadianceOctree>::contents(sparse, contents);
+    REQUIRE(contents.fields().size() == (six ? 7u : 2u) * static_cast<std::size_t>(sparse.tree.depth + 1));
+    for (const PortContents::Field& field : contents.fields()) {
+      std::map<Cell, glm::vec3> found, expected;
+      for (const auto& [voxel, value] : std::get<VoxelsRead>(field.source).read()) {
+        CHECK(found.emplace(octree::cellOf(voxel), value).second);
+        CHECK(glm::all(glm::lessThan(voxel, field.box.resolution)));
+      }
+      for (int face = 0; face < faces; ++face)
+        for (const auto& [voxel, value] : voxelsOf(dense, face, field.level))
+          if (field.name == "opacity")
+            expected[voxel] = glm::vec3(value.w);
+          else if (field.name == "opacity_along")
+            expected[voxel][face / 2] = value.w;
+          else if (field.name == "radiance" ||
+                   field.name ==
+                       std::string("radiance_") +
+                           PortTraits<DirectionalRadianceGrid>::kFaces[static_cast<std::size_t>(face)])
+            expected[voxel] = dense.unit * glm::vec3(value);
+      CAPTURE(field.name, field.level);
+      CHECK_FALSE(expected.empty());
+      CHECK((found == expected));
+      CHECK(glm::distance(field.box.low, glm::dvec3(dense.grid.low)) < 1e-6);
+      CHECK(field.box.voxelSize.x == Approx(dense.grid.voxelSize * (1 << field.level)));
+    }
+  };
+  if (six)
+    check(filteredDirections(injectedDirections(cornell(), resolution)), 6);
+  else
+    check(filtered(injectedGrid(cornell(), resolution)), 1);
+}
+
 TEST_CASE("stores that hold the same voxels show images within a FLIP of 0.03, in grids of any shape") {
   // The room fills no cube: its dense grid has empty voxels at the high ends, behind the walls.
   struct Pair {

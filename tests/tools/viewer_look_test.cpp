@@ -33,7 +33,7 @@ TEST_CASE("voxels of a port are shown in the window, with times of its frames an
          " record 'wrong.json'\n port nothing\n work off\n wait mended\n frame \"all\"\n time 3\n"
          " loop 0.5 s\n play on\n play off\n wait frame\n record 'framed.json'\n quit on",
          committedPipeline("voxel_cone_tracing"));
-  const auto record = [&](const char* name) { return Json::parse(place.read(name)); };
+  const auto record = [&](const char* name) { return recordOf(place, name); };
   const Json first = record("first.json"), voxels = record("voxels.json");
   CHECK(contains(rowOf(first, "time", "frame"), " ms, "));
   CHECK(contains(rowOf(first, "time", "first_picture"), " s after the start"));
@@ -60,14 +60,10 @@ TEST_CASE("a pixel that is no number is counted, and flashes as long as it is th
   place.write("nan.pipeline",
               "pipeline \"No number\" {\n  pass paint hostile.paint { deed nan }\n\n"
               "  output direct paint.radiance\n}\n");
-  place.write(
-      "script.view",
-      scriptOf(place, "view \"a test\" {\n reference off\n wait frame\n record 'nan.json'\n quit on\n}\n"));
-  const CommandResult done = runCommand(windowCommand(
-      "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" + place.file("nan.pipeline") +
-      "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
+  showedWhile(place,
+              "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" +
+                  place.file("nan.pipeline") + "' --resolution 8x8",
+              "reference off\n wait frame\n record 'nan.json'\n quit on", {});
   CHECK(rowOf(recordOf(place, "nan.json"), "look", "bad_pixels") == "1");
 }
 

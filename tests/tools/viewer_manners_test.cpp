@@ -14,24 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a script's window does in the background of a test.
-class Beside {
- public:
-  explicit Beside(std::string command)
-      : thread_([this, command = std::move(command)] { result_ = runCommand(command); }) {}
-  ~Beside() {
-    if (thread_.joinable()) thread_.join();
-  }
-  const CommandResult& result() {
-    if (thread_.joinable()) thread_.join();
-    return result_;
-  }
-
- private:
-  CommandResult result_;
-  std::thread thread_;
-};
-
 /// Width and height, from the header of the file.
 std::pair<int, int> sizeOfPng(const std::string& bytes) {
   const auto number = [&](std::size_t at) {
@@ -117,22 +99,14 @@ TEST_CASE("a window that is closed while a reference is traced ends within a sec
 TEST_CASE("a scene that is deleted while it is shown is told, and comes back with its file") {
   if (!canShowWindows()) return;
   const Workplace place;
-  place.write("script.view",
-              scriptOf(place,
-                       "view \"a test\" {\n wait frame\n record 'first.json'\n wait problem\n move 0.1 0 0\n"
-                       " record 'gone.json'\n wait mended\n wait frame\n record 'back.json'\n quit on\n}\n"));
-  Beside window(windowCommand("'" + place.scene() + "' '" + committedPipeline("direct_lighting") +
-                              "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  const bool first = becomes([&] { return place.has("first.json"); });
   const std::string text = place.read("room.scene");
-  fs::remove(place.file("room.scene"));
-  const bool gone = becomes([&] { return place.has("gone.json"); });
-  place.write("room.scene", text);
-  INFO(window.result().errors);
-  REQUIRE(first);
-  REQUIRE(gone);
-  CHECK(window.result().exitCode == 0);
-  CHECK(contains(recordOf(place, "gone.json").at("problem"), "room.scene"));
+  showedWhile(place,
+              "'" + place.scene() + "' '" + committedPipeline("direct_lighting") + "' --resolution 8x8",
+              "wait frame\n record 'first.json'\n wait problem\n move 0.1 0 0\n record 'gone.json'\n"
+              " wait mended\n wait frame\n record 'back.json'\n quit on",
+              {{"first.json", [&] { fs::remove(place.file("room.scene")); }},
+               {"gone.json", [&] { place.write("room.scene", text); }}});
+  CHECK_THAT(recordOf(place, "gone.json").at("problem").get<std::string>(), Tells("room.scene"));
   CHECK(recordOf(place, "back.json").at("problem") == "");
 }
 
@@ -146,27 +120,19 @@ TEST_CASE("a technique that throws while it is loaded anew is told, and the one 
   fs::copy_file(good, library);
   place.write("paint.pipeline",
               "pipeline \"Paint\" {\n  pass paint hostile.paint { }\n\n  output direct paint.radiance\n}\n");
-  place.write(
-      "script.view",
-      scriptOf(place,
-               "view \"a test\" {\n wait frame\n record 'first.json'\n wait problem\n record 'thrown.json'\n"
-               " wait mended\n wait frame\n save_image 'back.exr'\n quit on\n}\n"));
-  Beside window(windowCommand("--techniques '" + place.file("techniques") + "' '" + place.scene() + "' '" +
-                              place.file("paint.pipeline") + "' --resolution 8x8 --script '" +
-                              place.file("script.view") + "'"));
   const auto swapIn = [&](const fs::path& from) {
-    fs::copy_file(from, place.path() / "new.so");
-    fs::rename(place.path() / "new.so", library);  // as a linker's output is put in place
+    return [&place, &library, from] {
+      fs::copy_file(from, place / "new.so");
+      fs::rename(place / "new.so", library);  // as a linker's output is put in place
+    };
   };
-  const bool first = becomes([&] { return place.has("first.json"); });
-  swapIn(bad);
-  const bool thrown = becomes([&] { return place.has("thrown.json"); });
-  swapIn(good);
-  INFO(window.result().errors);
-  REQUIRE(first);
-  REQUIRE(thrown);
-  CHECK(window.result().exitCode == 0);
-  CHECK(contains(recordOf(place, "thrown.json").at("problem"), "the table of directions is missing"));
+  showedWhile(place,
+              "--techniques '" + place.file("techniques") + "' '" + place.scene() + "' '" +
+                  place.file("paint.pipeline") + "' --resolution 8x8",
+              "wait frame\n record 'first.json'\n wait problem\n record 'thrown.json'\n wait mended\n"
+              " wait frame\n save_image 'back.exr'\n quit on",
+              {{"first.json", swapIn(bad)}, {"thrown.json", swapIn(good)}});
+  CHECK_THAT(recordOf(place, "thrown.json").at("problem").get<std::string>(), Tells("table of directions"));
   CHECK(place.has("back.exr"));
 }
 

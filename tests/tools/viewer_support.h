@@ -4,14 +4,17 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
 #include <string>
+#include <thread>
 
 #include "lumivox/base/image.h"
 #include "tools/cli_support.h"
 #include "tools/display.h"
+#include "tools/started.h"
 #include "viewer/session.h"
 
 namespace lumivox::test {
@@ -74,6 +77,25 @@ inline CommandResult showed(const Workplace& place, const std::string& script, c
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   return result;
+}
+
+/// A window with a script that goes on beside a test, and ends well. `texts` are its scene, pipelines and
+/// options; each action is done once the file before it is there.
+inline void showedWhile(const Workplace& place, const std::string& texts, const std::string& script,
+                        const std::vector<std::pair<const char*, std::function<void()>>>& actions) {
+  place.write("script.view", "view \"a test\" {\n" + scriptOf(place, script) + "\n}\n");
+  CommandResult done;
+  std::thread window(
+      [&] { done = runCommand(windowCommand(texts + " --script '" + place.file("script.view") + "'")); });
+  bool came = true;
+  for (const auto& [file, action] : actions) {
+    came = came && becomes([&, name = file] { return place.has(name); });
+    action();
+  }
+  window.join();
+  INFO(done.errors);
+  REQUIRE(came);
+  REQUIRE(done.exitCode == 0);
 }
 
 /// What `record` wrote.

@@ -83,32 +83,24 @@ TEST_CASE(
     "a text that is broken while it is shown says where, and the picture comes back when it is mended") {
   if (!canShowWindows()) return;
   const Workplace place;
-  place.write("own.pipeline", readFile(committedPipeline("reflective_shadow_maps")));
-  place.write(
-      "script.view",
-      scriptOf(place,
-               "view \"a test\" {\n wait frame\n record 'first.json'\n wait problem\n record 'broken.json'\n"
-               " wait mended\n wait frame\n record 'mended.json'\n quit on\n}\n"));
-  CommandResult done;
-  std::thread window([&] {
-    done = runCommand(windowCommand("'" + place.scene() + "' '" + place.file("own.pipeline") +
-                                    "' --resolution 24x16 --script '" + place.file("script.view") + "'"));
-  });
-  const std::string good = place.read("own.pipeline");
-  const bool first = becomes([&] { return place.has("first.json"); });
-  place.write("own.pipeline", "pipeline \"Broken\" {\n  pass gbuffer direct_lighting.gbufer { }\n}\n");
-  const bool broken = becomes([&] { return place.has("broken.json"); });
-  std::filesystem::remove(place.file("own.pipeline"));  // gone while it is shown, and back
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const std::string good = readFile(committedPipeline("reflective_shadow_maps"));
   place.write("own.pipeline", good);
-  window.join();
-  INFO(done.errors);
-  REQUIRE(first);
-  REQUIRE(broken);
-  CHECK(done.exitCode == 0);
-  const std::string problem = recordOf(place, "broken.json").at("problem");
-  CHECK(contains(problem, "own.pipeline:2:"));
-  CHECK(contains(problem, "gbuffer"));
+  showedWhile(
+      place, "'" + place.scene() + "' '" + place.file("own.pipeline") + "' --resolution 24x16",
+      "wait frame\n record 'first.json'\n wait problem\n record 'broken.json'\n wait mended\n wait frame\n"
+      " record 'mended.json'\n quit on",
+      {{"first.json",
+        [&] {
+          place.write("own.pipeline",
+                      "pipeline \"Broken\" {\n  pass gbuffer direct_lighting.gbufer { }\n}\n");
+        }},
+       {"broken.json", [&] {
+          std::filesystem::remove(place.file("own.pipeline"));  // gone while it is shown, and back
+          std::this_thread::sleep_for(std::chrono::milliseconds(400));
+          place.write("own.pipeline", good);
+        }}});
+  CHECK_THAT(recordOf(place, "broken.json").at("problem").get<std::string>(),
+             Tells("own.pipeline:2", "gbuffer"));
   CHECK(recordOf(place, "mended.json").at("problem") == "");
 }
 
@@ -126,37 +118,23 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
     fs::copy(sourceDirectory() / "shaders" / folder, place.path() / "shaders" / folder);
   const fs::path shader = place.path() / "shaders/direct_lighting/compose.comp";
   const std::string good = readFile(shader);
-  place.write(
-      "script.view",
-      scriptOf(place,
-               "view \"a test\" {\n wait frame\n save_image 'first.exr'\n wait problem\n"
-               " record 'broken.json'\n wait mended\n wait frame\n save_image 'mended.exr'\n quit on\n}\n"));
-  CommandResult done;
-  std::thread window([&] {
-    done = runCommand(windowCommand("--techniques '" + place.file("lib/techniques") + "' '" + place.scene() +
-                                    "' '" + committedPipeline("reflective_shadow_maps") +
-                                    "' --resolution 24x16 --script '" + place.file("script.view") + "'"));
-  });
-  const bool first = becomes([&] { return place.has("first.exr"); });
-  place.write("shaders/direct_lighting/compose.comp", good + "\nthis is no GLSL\n");
-  const bool broken = becomes([&] { return place.has("broken.json"); });
   // Half as bright: what is swapped in is seen.
   std::string changed = good;
   const std::size_t store = changed.find("imageStore(");
   REQUIRE(store != std::string::npos);
   const std::size_t end = changed.find(");\n", store), value = changed.find("vec4(", store);
   changed.insert(end, ")").insert(value, "(0.5 * ");
-  place.write("shaders/direct_lighting/compose.comp", changed);
-  window.join();
-  INFO(done.errors);
-  REQUIRE(first);
-  REQUIRE(broken);
-  REQUIRE(done.exitCode == 0);
-  const std::string problem = recordOf(place, "broken.json").at("problem");
-  CHECK(contains(problem, "compose.comp"));
-  const auto line = std::count(good.begin(), good.end(), '\n') + 2;
-  INFO(problem);
-  CHECK(contains(problem, "compose.comp:" + std::to_string(line)));
+  const auto write = [&](const std::string& text) {
+    return [&place, text] { place.write("shaders/direct_lighting/compose.comp", text); };
+  };
+  showedWhile(place,
+              "--techniques '" + place.file("lib/techniques") + "' '" + place.scene() + "' '" +
+                  committedPipeline("reflective_shadow_maps") + "' --resolution 24x16",
+              "wait frame\n save_image 'first.exr'\n wait problem\n record 'broken.json'\n wait mended\n"
+              " wait frame\n save_image 'mended.exr'\n quit on",
+              {{"first.exr", write(good + "\nthis is no GLSL\n")}, {"broken.json", write(changed)}});
+  CHECK_THAT(recordOf(place, "broken.json").at("problem").get<std::string>(),
+             Tells("compose.comp:" + std::to_string(std::count(good.begin(), good.end(), '\n') + 2)));
   const ImageBuffer before = readExr(place.file("first.exr")).layers.at("final"),
                     after = readExr(place.file("mended.exr")).layers.at("final");
   REQUIRE(before.sameShape(after));
@@ -180,16 +158,13 @@ TEST_CASE("a technique that throws is told in place, and the window goes on") {
   place.write("refuse.pipeline",
               "pipeline \"Refuse\" {\n  pass paint hostile.paint { deed refuse }\n\n"
               "  output direct paint.radiance\n}\n");
-  place.write("script.view",
-              scriptOf(place,
-                       "view \"a test\" {\n wait problem\n record 'refused.json'\n show fast\n wait mended\n"
-                       " wait frame\n save_image 'good.exr'\n quit on\n}\n"));
-  const CommandResult done =
-      runCommand(windowCommand("--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" +
-                               place.file("refuse.pipeline") + "' '" + place.file("fast.pipeline") +
-                               "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  INFO(done.errors);
-  CHECK(done.exitCode == 0);
+  showedWhile(
+      place,
+      "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" + place.file("refuse.pipeline") +
+          "' '" + place.file("fast.pipeline") + "' --resolution 8x8",
+      "wait problem\n record 'refused.json'\n show fast\n wait mended\n wait frame\n save_image 'good.exr'\n"
+      " quit on",
+      {});
   CHECK(contains(recordOf(place, "refused.json").at("problem"), "the pass refuses"));
   CHECK(place.has("good.exr"));
 }
