@@ -184,22 +184,6 @@ TEST_CASE(
   CHECK(occupied > 20);
 }
 
-TEST_CASE("a lit plane stores albedo / pi times its irradiance in its voxels") {
-  SceneBuilder builder;
-  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
-  builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
-  const std::vector<float> texels = injected(builder.scene, 16);
-  const double expected = 0.6 / 3.14159265358979 * 3.0;
-  int occupied = 0;
-  for (std::size_t i = 0; i < texels.size(); i += 4) {
-    if (texels[i + 3] == 0.0f) continue;
-    ++occupied;
-    CHECK(texels[i] == Approx(expected).epsilon(0.002));  // albedo is kept in half floats
-    CHECK(texels[i + 3] == Approx(1.0f));
-  }
-  CHECK(occupied >= 14 * 14);
-}
-
 TEST_CASE(
     "a dim area light keeps its light in a grid with one 10^9 times as bright, in half floats with one of 10^6") {
   // Two spots that light a patch of the floor each. What the dim one lights alone is that of a scene without
@@ -345,26 +329,29 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("ambient light adds albedo / pi times its irradiance to every occupied voxel, lit or not") {
+TEST_CASE("every occupied voxel stores albedo / pi times its irradiance, of lights and of ambient light") {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
   builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
   for (const char* precision : {"float", "half"})
-    for (const bool lights : {true, false}) {
-      InjectSettings settings;
-      settings.precision = precision;
-      settings.lights = lights;
-      settings.ambient = 2.0;
-      const RadianceGrid grid = injectedGrid(builder.scene, 16, settings);
-      const std::vector<float> texels = grid.radiance->downloadFloats(0);
-      int occupied = 0;
-      for (std::size_t i = 0; i < texels.size(); i += 4) {
-        if (texels[i + 3] == 0.0f) continue;
-        ++occupied;
-        CHECK(texels[i] * grid.unit == Approx(0.6 / kPi * (2.0 + (lights ? 3.0 : 0.0))).epsilon(0.002));
+    for (const double ambient : {0.0, 2.0})
+      for (const bool lights : {true, false}) {
+        InjectSettings settings;
+        settings.precision = precision;
+        settings.lights = lights;
+        settings.ambient = ambient;
+        const RadianceGrid grid = injectedGrid(builder.scene, 16, settings);
+        const auto voxels = grid.radiance->downloadFloats(0);
+        int occupied = 0;
+        for (std::size_t i = 0; i < voxels.size(); i += 4) {
+          if (voxels[i + 3] == 0.0f) continue;
+          ++occupied;
+          CHECK(voxels[i + 3] == Approx(1.0f));
+          // Albedo is kept in half floats.
+          CHECK(voxels[i] * grid.unit == Approx(0.6 / kPi * (ambient + (lights ? 3.0 : 0.0))).epsilon(0.002));
+        }
+        CHECK(occupied >= 14 * 14);
       }
-      CHECK(occupied >= 14 * 14);
-    }
 }
 
 TEST_CASE("injection lists the bricks that hold fragments, each once, and how to dispatch over them") {

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "lumivox/base/file.h"
 #include "support/facts.h"
@@ -149,6 +151,23 @@ void checkRefused(const CommandResult& result, const Facts&... facts) {
   CHECK(result.exitCode == 2);
   CHECK(result.output.empty());
   CHECK_THAT(result.errors, Tells(facts...));
+}
+
+/// A finding in a text: its file, line and column, and its facts.
+struct Finding {
+  std::string place;
+  Tells facts;
+};
+inline void checkFindings(const CommandResult& result, const std::vector<Finding>& findings) {
+  checkRefused(result);
+  for (const Finding& finding : findings) {
+    std::string own;
+    std::istringstream lines(result.errors);
+    for (std::string line; std::getline(lines, line);)
+      if (contains(line, "/" + finding.place + ": ")) own += line + "\n";
+    CAPTURE(finding.place, own);
+    CHECK_THAT(own, finding.facts);
+  }
 }
 
 }  // namespace lumivox::test
