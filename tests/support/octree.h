@@ -190,4 +190,36 @@ inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
   return result;
 }
 
+/// An octree over a grid of [-1,1]^3 with all levels, whose finest voxels `fill` gives by face and voxel, as
+/// cones::makeDirections takes them; only where it is above 0 for some face there are leaves.
+inline RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int, int, int, int)>& fill,
+                               const char* bricks = "own", const char* faces = "six",
+                               const char* opacity = "facing") {
+  const auto isSomething = [&](const glm::ivec3& at) {
+    bool found = false;
+    for (int face = 0; face < 6 && !found; ++face) found = fill(face, at.x, at.y, at.z).w > 0.0f;
+    return glm::vec4(found ? 1.0f : 0.0f);
+  };
+  const glm::ivec3 size(resolution);
+  RadianceOctree octree =
+      leavesOf(listOf(fragmentsWhere(size, isSomething), size), "as_grid", "float", bricks, faces);
+  const gpu::TextureDescription& pool = octree.radiance->description();
+  std::vector<float> texels = octree.radiance->downloadFloats(0);
+  for (const auto& brick : OctreeBrickList::of(octree.tree, 0).bricks)
+    for (int i = 0; i < octree.tree.brickVoxels() * octree.faces; ++i) {
+      const int side = octree.tree.brickSide(), face = i / octree.tree.brickVoxels(),
+                lane = i % octree.tree.brickVoxels();
+      const glm::ivec3 local(lane % side, lane / side % side, lane / (side * side)),
+          at = octree.texelOf(brick.index, face) + local, voxel = 2 * brick.place + local;
+      const glm::vec4 value = glm::any(glm::greaterThanEqual(voxel, size))
+                                  ? glm::vec4(0.0f)
+                                  : fill(face, voxel.x, voxel.y, voxel.z);
+      for (int c = 0; c < 4; ++c)
+        texels[4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x) +
+               static_cast<std::size_t>(c)] = value[c];
+    }
+  octree.radiance->uploadFloats(0, texels);
+  return filteredOctree(octree, opacity);
+}
+
 }  // namespace lumivox::test::octree

@@ -256,20 +256,6 @@ TEST_CASE("what lies behind a light casts no shadow") {
   CHECK(visible(litFrom(LightKind::directional), sheet(1.0f, 64, 63)) < 0.05);
 }
 
-TEST_CASE("voxels that hold the media are refused beside the media themselves") {
-  const Scene scene = litFrom(LightKind::point);
-  RadianceGrid grid = cones::uniformGrid(8, glm::vec4(0.0f));
-  grid.holdsMedia = true;
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "soft_shadows", scene, snapshot);
-  harness.setInput("gbuffer", cones::surfacePoint({0, 0, 0}, {0, 1, 0}, glm::vec3(1.0f)));
-  harness.setInput("grid", grid);
-  harness.setInput("lights", lightsOf(scene));
-  harness.setInput("media", ScatteringGrid{});
-  CHECK_THAT(messageOf<Error>([&] { harness.run(); }),
-             Contains("already contain the media") && Contains("store_media off"));
-}
-
 TEST_CASE("the lights of soft shadows are those of shadow maps, without views") {
   const Scene scene = litRoom(16, 16);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);

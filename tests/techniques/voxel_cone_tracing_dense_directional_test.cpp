@@ -1,8 +1,9 @@
-// Six directional grids: their levels, their injection and the cones through them, in closed form.
+// Six directional grids and octrees of six faces: their levels, their injection and the cones through them,
+// in closed form.
 #include <algorithm>
 #include <cmath>
 
-#include "support/cones.h"
+#include "support/stores.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -35,16 +36,13 @@ TEST_CASE("children of a column are composited as seen from each side, and the f
   // One coarse voxel. Along x the column at y = z = 0 holds (red, half opaque) before (green, opaque); a
   // second one green alone; the other two are empty.
   const auto fill = [](int, int x, int y, int z) -> glm::vec4 {
-    if (z != 0) return glm::vec4(0.0f);
+    if (z != 0 || x > 1 || y > 1) return glm::vec4(0.0f);
     if (y == 0) return x == 0 ? glm::vec4(0.5f, 0, 0, 0.5f) : glm::vec4(0, 1, 0, 1);
     return x == 1 ? glm::vec4(0, 1, 0, 1) : glm::vec4(0.0f);
   };
-  const DirectionalRadianceGrid six = filteredDirections(makeDirections(2, fill));
-  const DirectionalRadianceGrid one =
-      filteredDirections(makeGrid(2, [&](int x, int y, int z) { return fill(0, x, y, z); }));
-  for (const DirectionalRadianceGrid* grid : {&six, &one}) {
-    CHECK(grid->filledLevels == 2);
-    const auto at = [&](int face) { return faceAt(*grid, face, 1, glm::ivec3(0)); };
+  const auto check = [](const auto& store, const char* name) {
+    CAPTURE(name);
+    const auto at = [&](int face) { return voxelsOf(store, face, 1).at({0, 0, 0}); };
     // From below: 0.5 red, then half of green; from above: green alone. The mean with the second column, / 4.
     checkNear(at(kLowerX), {0.125f, 0.375f, 0, 0.5f});
     checkNear(at(kHigherX), {0, 0.5f, 0, 0.5f});
@@ -53,39 +51,51 @@ TEST_CASE("children of a column are composited as seen from each side, and the f
     checkNear(at(kHigherY), {0.125f, 0.25f, 0, 0.375f});
     // Along z: red 0.5, green, nothing, green in four columns.
     checkNear(at(kHigherZ), {0.125f, 0.5f, 0, 0.625f});
-  }
+  };
+  const DirectionalRadianceGrid six = filteredDirections(makeDirections(2, fill));
+  CHECK(six.filledLevels == 2);
+  check(six, "six grids");
+  check(filteredDirections(makeGrid(2, [&](int x, int y, int z) { return fill(0, x, y, z); })), "coarse");
+  for (const char* bricks : {"own", "published"}) check(octree::octreeOf(4, fill, bricks), bricks);
 }
 
 TEST_CASE("each side of a wall with two coats of paint keeps its colour and closes at every level") {
   // The red-green wall of thesis Sec. 3.1.3: two layers of voxels in one coarser one. A mean of the children
   // is half of each colour.
   constexpr int kResolution = 32;
-  const auto paint = [](int x) {
+  const auto paint = [](int, int x, int, int) {
     return x == 16 ? glm::vec4(1, 0, 0, 1) : x == 17 ? glm::vec4(0, 1, 0, 1) : glm::vec4(0.0f);
   };
-  const DirectionalRadianceGrid six =
-      filteredDirections(makeDirections(kResolution, [&](int, int x, int, int) { return paint(x); }));
-  const DirectionalRadianceGrid one =
-      filteredDirections(makeGrid(kResolution, [&](int x, int, int) { return paint(x); }));
-  for (const DirectionalRadianceGrid* grid : {&six, &one})
+  const auto check = [](const auto& store, const char* name) {
     for (int level = 1; level < 5; ++level) {
-      const glm::ivec3 voxel((16 >> level), 0, 0);
-      INFO("level " << level);
-      checkNear(faceAt(*grid, kLowerX, level, voxel), {1, 0, 0, 1});
-      checkNear(faceAt(*grid, kHigherX, level, voxel), {0, 1, 0, 1});
+      CAPTURE(name, level);
+      const auto lower = voxelsOf(store, kLowerX, level), higher = voxelsOf(store, kHigherX, level);
+      const auto side = static_cast<std::size_t>(kResolution >> level);
+      CHECK(lower.size() == side * side);
+      for (const auto& [voxel, value] : lower) {
+        CHECK(voxel[0] == 16 >> level);
+        checkNear(value, {1, 0, 0, 1});
+        checkNear(higher.at(voxel), {0, 1, 0, 1});
+      }
     }
-  const std::vector<float> mixed =
-      filtered(makeGrid(kResolution, [&](int x, int, int) { return paint(x); })).radiance->downloadFloats(1);
+    if (name == std::string("coarse") || name == std::string("published")) return;
+    // Narrow cones from either side see one coat; they read six faces of an octree in own bricks alone.
+    for (const float from : {-1.0f, 1.0f})
+      for (const float tilt : {0.0f, 1.0f}) {
+        const glm::vec3 seen =
+            alongNormal(store, {0.03f + 0.4f * from, 0, 0}, {-from, tilt, 0.3f * tilt}, 400.0f, {});
+        CAPTURE(name, from, tilt);
+        CHECK((from < 0 ? seen.r : seen.g) == Approx(1.0).epsilon(1e-3));
+        CHECK((from < 0 ? seen.g : seen.r) < 1e-3f);
+      }
+  };
+  const auto one = [&](int x, int y, int z) { return paint(0, x, y, z); };
+  check(filteredDirections(makeDirections(kResolution, paint)), "six grids");
+  check(filteredDirections(makeGrid(kResolution, one)), "coarse");
+  for (const char* bricks : {"own", "published"}) check(octree::octreeOf(kResolution, paint, bricks), bricks);
+  const std::vector<float> mixed = filtered(makeGrid(kResolution, one)).radiance->downloadFloats(1);
   CHECK(mixed[4 * 8] == Approx(0.5).epsilon(1e-5));
   CHECK(mixed[4 * 8 + 1] == Approx(0.5).epsilon(1e-5));
-  // Narrow cones from either side see one coat.
-  for (const float side : {-1.0f, 1.0f})
-    for (const float tilt : {0.0f, 1.0f}) {
-      const glm::vec3 seen =
-          alongNormal(six, {0.03f + 0.4f * side, 0, 0}, {-side, tilt, 0.3f * tilt}, 400.0f, {});
-      CHECK((side < 0 ? seen.r : seen.g) == Approx(1.0).epsilon(1e-3));
-      CHECK((side < 0 ? seen.g : seen.r) < 1e-3f);
-    }
 }
 
 TEST_CASE("one wall of one sheet, lit on one side, shines to that side alone") {
@@ -151,63 +161,6 @@ TEST_CASE("the two faces of a thin wall in one voxel keep what each reflects, an
   CHECK(faceAt(grid, kHigherY, 0, voxel).a < 1e-3f);
   alike.opaqueAlong = "all";
   CHECK(faceAt(injectedDirections(builder.scene, 16, alike), kHigherY, 0, voxel).a == 1.0f);
-}
-
-TEST_CASE("a constant environment passes through empty directional grids unchanged") {
-  const glm::vec3 environment(0.5f, 1.0f, 2.0f);
-  const DirectionalRadianceGrid empty =
-      filteredDirections(makeDirections(16, [](int, int, int, int) { return glm::vec4(0.0f); }));
-  for (const int cones : {1, 5, 6, 9, 16}) {
-    const glm::vec3 radiance =
-        gather(emptyScene(environment), empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
-    for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-5));
-  }
-}
-
-TEST_CASE("a uniform directional grid returns L (1 - (1-a)^(d / voxel)) whatever the width of the cone") {
-  constexpr int kResolution = 64;
-  const double voxel = 2.0 / kResolution;
-  for (const float opacity : {0.02f, 0.3f}) {
-    const glm::vec4 value(opacity * 1.0f, opacity * 2.0f, opacity * 0.5f, opacity);
-    const DirectionalRadianceGrid six =
-        filteredDirections(makeDirections(kResolution, [&](int, int, int, int) { return value; }));
-    const DirectionalRadianceGrid one = filteredDirections(uniformGrid(kResolution, value));
-    for (const DirectionalRadianceGrid* grid : {&six, &one})
-      for (const char* reading : {"layers", "interpolated"})
-        for (const int cones : {1, 6, 64})
-          for (const double distance : {0.1, 0.5}) {
-            GatherSettings settings{cones, "cosine", 0, 0, distance, 0.25};
-            settings.reading = reading;
-            const glm::vec3 gathered = gather(emptyScene(), *grid, glm::vec3(0.0f), {0, 1, 0}, settings);
-            const double expected = 1.0 - std::pow(1.0 - opacity, distance / voxel);
-            INFO(reading << ", opacity " << opacity << ", cones " << cones << ", distance " << distance);
-            CHECK(gathered.r == Approx(expected).epsilon(0.01));
-            CHECK(gathered.g == Approx(2.0 * expected).epsilon(0.01));
-          }
-  }
-}
-
-TEST_CASE("as published, a voxel shows its three faces by the shares of the direction") {
-  // Listing 4.15: weights |d| / sum |d|. Every voxel lets nothing through; its faces shine 1, 2 and 4. The
-  // printed steps add the first sample in full: opacity 1 takes part with 1 - 0, and nothing comes after.
-  const std::array<float, 6> shine{1, 10, 2, 20, 4, 40};
-  const DirectionalRadianceGrid grid = filteredDirections(makeDirections(16, [&](int face, int, int, int) {
-    return glm::vec4(glm::vec3(shine[static_cast<std::size_t>(face)]), 1.0f);
-  }));
-  GatherSettings settings;
-  settings.reading = "interpolated";
-  settings.step = 0.25;
-  for (const glm::vec3 direction : {glm::vec3(-1, -2, -3), glm::vec3(3, -1, 1), glm::vec3(0, 0, 1)}) {
-    const glm::vec3 d = glm::normalize(direction),
-                    weights = glm::abs(d) / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-    double expected = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-      expected += weights[axis] * shine[static_cast<std::size_t>(2 * axis + (d[axis] < 0.0f ? 0 : 1))];
-    INFO("direction " << d.x << " " << d.y << " " << d.z);
-    CHECK(alongNormal(grid, glm::vec3(0.0f), d, 1e5f, settings).r == Approx(expected).epsilon(1e-3));
-    // Layers of opaque voxels have the same mean.
-    CHECK(alongNormal(grid, glm::vec3(0.0f), d, 1e5f, {}).r == Approx(expected).epsilon(1e-3));
-  }
 }
 
 TEST_CASE("a closed box of uniform radiance gives it back, by whatever cones and at whatever resolution") {
@@ -283,30 +236,6 @@ TEST_CASE("a single lit voxel down narrow cones brings its solid angle over that
   }
 }
 
-TEST_CASE("directional levels are the same bits by occupied bricks and by all voxels") {
-  SceneBuilder builder;
-  const int grey = builder.lambert(0.6f);
-  builder.box({-1, -1, -1}, {1, 1, 1}, grey, true);
-  builder.box({-0.3f, -1, -0.2f}, {0.2f, 0.1f, 0.3f}, grey, false);
-  builder.light(LightKind::point, {1, 1, 1}, {0.2f, 0.7f, -0.1f});
-  for (const int resolution : {5, 32, 50}) {
-    const auto levels = [&](bool follow) {
-      DirectionalRadianceGrid grid = injectedDirections(builder.scene, resolution);
-      REQUIRE(grid.occupied.bricks != nullptr);
-      if (!follow) grid.occupied = {};
-      const int count = grid.faces[0]->description().levels;
-      for (const auto& face : grid.faces)
-        for (int level = 1; level < count; ++level) face->clear(glm::vec4(7.0f), level);
-      grid = filteredDirections(grid);
-      std::vector<std::vector<float>> texels;
-      for (const auto& face : grid.faces)
-        for (int level = 0; level < count; ++level) texels.push_back(face->downloadFloats(level));
-      return texels;
-    };
-    CHECK(levels(true) == levels(false));
-  }
-}
-
 TEST_CASE("opacity is the same from both sides of an axis at every level") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.6f), true);
@@ -344,31 +273,4 @@ TEST_CASE("cones take exactly one store, and say which are there") {
   PassHarness filter(device(), techniques(), "voxel_cone_tracing", "filter_directional", scene,
                      snapshotOf(scene, 0.0));
   CHECK_THROWS_WITH(filter.run(), Contains("no finest level"));
-}
-
-TEST_CASE("grids that do not fit are refused with the bytes that they need and the largest that fit") {
-  gpu::DeviceOptions options;
-  options.memoryBytes = 32 << 20;
-  gpu::Device small(options);
-  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
-  const auto message = [&](const char* name) {
-    RenderOptions render;
-    render.width = render.height = 16;
-    const Pipeline text = pipeline(name);
-    render.parameters = text.settings({"resolution=128"});
-    PipelineExecutor executor(small, techniques(), scene, text, render);
-    try {
-      executor.render(0.0);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  // 128^3 voxels of 16 bytes and a seventh for the coarser levels: 36.6 MiB, and six times that.
-  CHECK_THAT(message("voxel_cone_tracing"),
-             Contains("a grid of 128 voxels along the longest side takes 36.6 MiB") &&
-                 Contains("the largest that fits is 64"));
-  CHECK_THAT(message("voxel_cone_tracing_directional"),
-             Contains("six directional grids of 128 voxels along the longest side takes 219") &&
-                 Contains("the largest that fits is"));
 }

@@ -1,5 +1,5 @@
-// What moves changes only a part of a grid: the rest is kept, and nothing tells a frame from the first one of
-// a fresh run; and what that costs, in every store.
+// What moves changes only a part of a grid or of an octree: the rest is kept, and nothing tells a frame from
+// the first one of a fresh run; and what that costs, in every store.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "support/cones.h"
 #include "support/kept_table.h"
 #include "support/moving_room.h"
+#include "support/octree.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -20,10 +20,16 @@ using voxel_cone_tracing::DirectionalRadianceGrid;
 
 constexpr std::array kGrids{"voxel_cone_tracing", "voxel_cone_tracing_directional",
                             "voxel_cone_tracing_coarse_directional"};
+constexpr std::array kOctrees{"voxel_cone_tracing_octree", "voxel_cone_tracing_octree_directional"};
+std::vector<std::string> gridsAndOctrees() {
+  std::vector<std::string> all(kGrids.begin(), kGrids.end());
+  all.insert(all.end(), kOctrees.begin(), kOctrees.end());
+  return all;
+}
 
-/// All that a grid holds.
+/// All that a grid or an octree holds.
 struct Voxels {
-  std::vector<std::vector<float>> levels;  ///< of each texture
+  std::vector<std::vector<float>> levels;  ///< of each texture, or of each face of the bricks
   std::set<std::uint32_t> bricks;
   float unit = 1.0f;
   bool operator==(const Voxels& other) const {
@@ -39,14 +45,22 @@ class Run {
  public:
   Run(const std::string& name, const Scene& scene, int resolution = 32, const std::string& settings = "",
       const std::string& ambient = "0")
-      : isDirectional_(name != kGrids[0]),
+      : isOctree_(name.rfind(kOctrees[0], 0) == 0),
+        isDirectional_(name != kGrids[0]),
         pipeline_(withSettings(name, settings)),
         executor_(device(), techniques(), scene, pipeline_, optionsFor(resolution, ambient)) {
-    executor_.keepOutput("grid", "mips");
+    executor_.keepOutput(filled(), "mips");
   }
+  /// The pass that fills all levels.
+  const char* filled() const { return isOctree_ ? "bricks" : "grid"; }
   Voxels at(double time, int frame = 0) {
     executor_.render(time, frame);
     Voxels result;
+    if (isOctree_) {
+      add(result,
+          static_cast<const Out<octree::RadianceOctree>*>(executor_.output("bricks", "mips"))->value());
+      return result;
+    }
     OccupiedBricks occupied;
     if (isDirectional_) {
       const auto& grid =
@@ -73,8 +87,9 @@ class Run {
   }
 
  private:
-  static Pipeline withSettings(const std::string& name, const std::string& settings) {
+  Pipeline withSettings(const std::string& name, const std::string& settings) const {
     const Pipeline committed = pipeline(name);
+    if (isOctree_) return committed;
     std::string source = committed.document->source;
     const std::string parameter = "  param cones", place = "    fragments voxels.fragments\n";
     source.insert(source.find(place), "    ambient $ambient\n    " + settings + "\n");
@@ -84,7 +99,9 @@ class Run {
   RenderOptions optionsFor(int resolution, const std::string& ambient) const {
     RenderOptions result;
     result.width = result.height = 8;
-    result.parameters = parameters({"resolution=" + std::to_string(resolution), "ambient=" + ambient});
+    std::vector<std::string> assignments{"resolution=" + std::to_string(resolution)};
+    if (!isOctree_) assignments.push_back("ambient=" + ambient);
+    result.parameters = parameters(assignments);
     return result;
   }
   static void add(Voxels& voxels, const gpu::TextureRef& texture) {
@@ -93,7 +110,22 @@ class Run {
       voxels.levels.push_back(texture->downloadFloats(level));
   }
 
-  bool isDirectional_;
+  static void add(Voxels& voxels, const octree::RadianceOctree& octree) {
+    voxels.unit = octree.unit;
+    for (int level = 0; level <= octree.tree.depth; ++level)
+      for (int face = 0; face < octree.faces; ++face) {
+        std::vector<float> values;
+        for (const auto& [place, brick] : octree::bricksOf(octree, level, face)) {
+          for (const int i : place) values.push_back(static_cast<float>(i));
+          for (const glm::vec4& texel : brick)
+            values.insert(values.end(), {texel.x, texel.y, texel.z, texel.w});
+        }
+        CHECK_FALSE(values.empty());
+        voxels.levels.push_back(std::move(values));
+      }
+  }
+
+  bool isOctree_, isDirectional_;
   Pipeline pipeline_;
   PipelineExecutor executor_;
 };
@@ -125,9 +157,10 @@ Scene movingArcade() {
 
 }  // namespace
 
-TEST_CASE("after any sequence of times grids are those of a fresh run at that time, to the bit") {
-  for (const char* name : kGrids)
+TEST_CASE("after any sequence of times grids and octrees are those of a fresh run at that time, to the bit") {
+  for (const std::string& name : gridsAndOctrees())
     for (const RoomLight& one : kRoomLights) {
+      if (name == kOctrees[1] && one.light != lamp) continue;
       const Scene scene = movingRoom(one.light);
       Run run(name, scene);
       int frame = 0;
@@ -138,7 +171,7 @@ TEST_CASE("after any sequence of times grids are those of a fresh run at that ti
         CHECK(same);
       }
       CHECK(reusesStill(run.executor(), "light"));
-      CHECK(reusesStill(run.executor(), "grid"));
+      CHECK(reusesStill(run.executor(), run.filled()));
     }
 }
 
@@ -178,8 +211,8 @@ TEST_CASE("a parameter, a light or a scene that changes while things move makes 
   }
 }
 
-TEST_CASE("what stands still is kept in grids, and not where all of it is lit anew") {
-  for (const char* name : kGrids)
+TEST_CASE("what stands still is kept in grids and octrees, and not where all of it is lit anew") {
+  for (const std::string& name : gridsAndOctrees())
     for (const bool lightMoves : {false, true}) {
       Scene scene = movingRoom(lamp);
       if (lightMoves)
@@ -193,7 +226,10 @@ TEST_CASE("what stands still is kept in grids, and not where all of it is lit an
         CHECK(same);
       }
       CHECK(reusesStill(run.executor(), "light") == !lightMoves);
-      CHECK(reusesStill(run.executor(), "grid") == !lightMoves);
+      CHECK(reusesStill(run.executor(), run.filled()) == !lightMoves);
+      if (run.filled() == std::string("grid")) continue;
+      CHECK(reusesStill(run.executor(), "voxels"));
+      CHECK(reusesStill(run.executor(), "tree"));
     }
 }
 

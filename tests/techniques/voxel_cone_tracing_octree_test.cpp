@@ -226,16 +226,6 @@ TEST_CASE("parts that are averaged count twice along each axis along which a nei
   }
 }
 
-TEST_CASE("a constant environment passes through an empty octree unchanged") {
-  const glm::vec3 environment(0.5f, 1.0f, 2.0f);
-  const RadianceOctree empty = filteredOctree(leavesOf(listOf({}, glm::ivec3(16))));
-  for (const int cones : {1, 6, 32}) {
-    const glm::vec3 radiance =
-        gather(emptyScene(environment), empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
-    for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-3));
-  }
-}
-
 TEST_CASE("a uniform octree of opacity and radiance returns L (1 - (1-a)^(d / voxel)) wherever voxels lie") {
   constexpr int kResolution = 64;
   const double voxel = 2.0 / kResolution;
@@ -248,8 +238,7 @@ TEST_CASE("a uniform octree of opacity and radiance returns L (1 - (1-a)^(d / vo
         listOf(fragmentsWhere(glm::ivec3(kResolution),
                               [&](const glm::ivec3&) { return glm::vec4(radiance, opacity); }),
                glm::ivec3(kResolution));
-    for (const Way& way : {Way{"as_grid", "facing", "added"}, Way{"as_grid", "average", "added"},
-                           Way{"at_corners", "average", "added"}, Way{"in_leaves", "average", "averaged"}}) {
+    for (const Way& way : {Way{"at_corners", "average", "added"}, Way{"in_leaves", "average", "averaged"}}) {
       const RadianceOctree octree = filteredOctree(leavesOf(list, way.voxels), way.opacity, way.borders);
       for (const int cones : {1, 6, 64})
         for (const double distance : {0.1, 0.25, 0.5}) {
@@ -311,89 +300,6 @@ TEST_CASE("cones see the same in bricks of their own voxels and in those that ho
   }
 }
 
-TEST_CASE("a closed box whose thick walls all radiate L gives L back within 3 %") {
-  // Walls as thick as the voxels that 64 cones read across it: of sheets trilinear reading lets exp(-2 / cos)
-  // through, as in the dense grid. Six wider ones lose a little more.
-  constexpr int kThick = 8;
-  for (const int resolution : {32, 64}) {
-    const auto wall = [&](const glm::ivec3& at) {
-      const glm::ivec3 inner = glm::min(at, resolution - 1 - at);
-      const int depth = std::min({inner.x, inner.y, inner.z});
-      return depth >= 1 && depth <= resolution / kThick ? glm::vec4(0.5f, 0.5f, 0.5f, 1.0f) : glm::vec4(0.0f);
-    };
-    const RadianceOctree octree = filteredOctree(
-        leavesOf(listOf(fragmentsWhere(glm::ivec3(resolution), wall), glm::ivec3(resolution))));
-    for (const int cones : {6, 64})
-      for (const float along : {-0.5f, 0.0f, 0.4f}) {
-        const glm::vec3 position(along, -1.0f + 2.0f / kThick + 2.5f / static_cast<float>(resolution),
-                                 0.5f * along);
-        const glm::vec3 radiance =
-            gather(emptyScene(), octree, position, {0, 1, 0}, {cones, "cosine", 1, 1, 0, 0.5});
-        CAPTURE(resolution, cones, along);
-        CHECK(radiance.x == Approx(0.5).epsilon(cones == 64 ? 0.03 : 0.05));
-      }
-  }
-}
-
-TEST_CASE("narrow cones all around a single lit voxel see its radiance times its solid angle within 10 %") {
-  // A mirror at the origin looks in turn into directions around the one to the voxel, through (a, b) of the
-  // plane at distance 1: each stands for the solid angle cos^3 da db. A face of s^2 at a distance d from the
-  // apex subtends s^2 / d^2; what trilinear reading shows of a voxel lies around its middle.
-  constexpr int kResolution = 64, kSide = 48;
-  constexpr double kVoxel = 2.0 / kResolution;
-  const glm::ivec3 cell(32 + 20, 32, 32);
-  const RadianceOctree octree =
-      filteredOctree(leavesOf(listOf({fragmentAt(cell, glm::vec3(1.0f))}, glm::ivec3(kResolution))));
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kSide, kSide);
-  const Scene& scene = builder.scene;
-  const glm::dvec3 middle = (glm::dvec3(cell) + 0.5) * kVoxel - 1.0, forward = glm::normalize(middle),
-                   up(0, 1, 0), right = glm::normalize(glm::cross(forward, up)),
-                   top = glm::cross(right, forward);
-  const double distance = middle.x, width = 10.0 * kVoxel;
-  for (const float exponent : {4000.0f, 800.0f}) {
-    GBuffer gbuffer = surfacePoint(glm::vec3(0.0f), {1, 0, 0}, glm::vec3(0.0f));
-    gpu::TextureDescription description = gbuffer.position->description();
-    description.width = description.height = kSide;
-    const auto image = [&](const auto& valueAt) {
-      std::vector<float> values;
-      for (int i = 0; i < kSide * kSide; ++i) {
-        const glm::vec4 value = valueAt(i);
-        values.insert(values.end(), {value.x, value.y, value.z, value.w});
-      }
-      auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-      texture->uploadFloats(0, values);
-      return texture;
-    };
-    const auto planeAt = [&](int i) {
-      return (glm::dvec2(i % kSide, i / kSide) + 0.5) * (2.0 * width / kSide) - width;
-    };
-    const auto directionAt = [&](int i) {
-      return glm::normalize(forward + planeAt(i).x * right + planeAt(i).y * top);
-    };
-    const glm::dvec3 view(0, 0, -1);  // from the eye
-    const auto normalAt = [&](int i) { return glm::normalize(directionAt(i) - view); };
-    const auto constant = [](const glm::vec4& value) { return [value](int) { return value; }; };
-    gbuffer.position = image(constant({0, 0, 0, 1}));
-    gbuffer.normal = gbuffer.geometricNormal =
-        image([&](int i) { return glm::vec4(glm::vec3(normalAt(i)), 1.0f); });
-    gbuffer.diffuse = image(constant(glm::vec4(0.0f)));
-    gbuffer.specular = image(constant({1, 1, 1, exponent}));
-    const ImageBuffer seen =
-        gatherWith(scene, octree, gbuffer, {6, "cosine", 0, 0, 0, 0.25},
-                   [](PassHarness& harness) { return imageOf(*harness.output<Image>("glossy").texture); });
-    double sum = 0.0;
-    for (int i = 0; i < kSide * kSide; ++i) {
-      const double cosPlane = glm::dot(directionAt(i), forward),
-                   cosMirror = glm::dot(directionAt(i), normalAt(i)),
-                   solidAngle = std::pow(cosPlane, 3) * std::pow(2.0 * width / kSide, 2);
-      sum += seen.at(i % kSide, i / kSide, 0) / cosMirror * solidAngle;
-    }
-    CAPTURE(exponent);
-    CHECK(sum == Approx(kVoxel * kVoxel / (distance * distance)).epsilon(0.10));
-  }
-}
-
 TEST_CASE("as published, a sample between two levels is blended the other way round") {
   // One sample for each of the printed cones, of 2.8 voxels at a distance of 2: its level is log2 2.8
   // = 1.485. Opacities of voxels of the levels 1 and 2 of a uniform medium are 1 - (1-a)^2 and 1 - (1-a)^4;
@@ -417,24 +323,6 @@ TEST_CASE("as published, a sample between two levels is blended the other way ro
         Approx(expected).epsilon(1e-3));
 }
 
-TEST_CASE("the octree's image differs from the dense grid's by a FLIP under 0.03, in grids of any shape") {
-  // The room fills no cube: its dense grid has empty voxels at the high ends, behind the walls.
-  RenderOptions options;
-  options.width = options.height = 64;
-  for (const char* name : {"cornell", "untuned/room"}) {
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
-    CAPTURE(name);
-    const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
-                      sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
-    for (const char* output : {"indirect_diffuse", "final"}) {
-      const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
-      INFO(output << ": FLIP " << error.flip);
-      CHECK(error.flip < 0.03);
-      CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.001));
-    }
-  }
-}
-
 TEST_CASE("a steady frame waits for no count of the octree") {
   const Scene scene = cornell();
   RenderOptions options;
@@ -445,31 +333,6 @@ TEST_CASE("a steady frame waits for no count of the octree") {
   const std::uint64_t before = device().transfers().stalls;
   executor.render(0.0, 1, PipelineExecutor::Images::no);
   CHECK(device().transfers().stalls == before);
-}
-
-TEST_CASE("what is exported of an octree are its levels, each voxel once, where the dense grid has it") {
-  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing");
-  PortContents contents(portKind<RadianceOctree>());
-  PortTraits<RadianceOctree>::contents(sparse, contents);
-  REQUIRE(contents.fields().size() == 2u * static_cast<std::size_t>(sparse.tree.depth + 1));
-  for (const PortContents::Field& field : contents.fields()) {
-    const auto& read = std::get<VoxelsRead>(field.source);
-    std::set<Cell> seen;
-    double sum = 0.0, expected = 0.0;
-    for (const auto& [voxel, value] : read.read()) {
-      CHECK(seen.insert(cellOf(voxel)).second);
-      CHECK(glm::all(glm::lessThan(voxel, field.box.resolution)));
-      sum += value.x;
-    }
-    const std::size_t channel = field.name == "opacity" ? 3 : 0;
-    const std::vector<float> texels = dense.radiance->downloadFloats(field.level);
-    for (std::size_t i = channel; i < texels.size(); i += 4)
-      expected += texels[i] * (channel == 0 ? dense.unit : 1.0f);
-    CAPTURE(field.name, field.level);
-    CHECK(sum == Approx(expected).epsilon(1e-5));
-    CHECK(glm::distance(field.box.low, glm::dvec3(dense.grid.low)) < 1e-6);
-    CHECK(field.box.voxelSize.x == Approx(dense.grid.voxelSize * (1 << field.level)));
-  }
 }
 
 TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
@@ -520,8 +383,7 @@ TEST_CASE("an octree that does not fit is refused with the bytes that it needs a
     bool published;
     const char* what;
   };
-  for (const Limit& limit :
-       {Limit{20u << 20, 128, 64, false, "takes "}, Limit{24u << 20, 128, 64, true, "takes "}}) {
+  for (const Limit& limit : {Limit{24u << 20, 128, 64, true, "takes "}}) {
     CAPTURE(limit.bytes, limit.resolution, limit.published);
     CHECK_THROWS_WITH(render(limit.bytes, limit.resolution, limit.published),
                       Catch::Matchers::Contains(fmt::format("an octree of {} voxels", limit.resolution)) &&
@@ -545,41 +407,4 @@ TEST_CASE("tags that do not fit are refused before anything is counted") {
       Catch::Matchers::Contains(
           "an octree of 512 voxels along its longest side takes at least 13.7 MiB: tags 13.7 MiB") &&
           Catch::Matchers::Contains("the largest that fits is 256 "));
-}
-
-TEST_CASE("further bounces in the octree are those of the dense grid") {
-  for (const char* bricks : {"own", "published"}) {
-    const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", bricks, 3);
-    const auto [once, direct] = bothOf(cornell(), 32, "float", "facing", bricks, 1);
-    const auto lightOf = [](const RadianceOctree& octree) {
-      double sum = 0.0;
-      for (const auto& [voxel, light] : octree.voxels(0, 0)) sum += light.x + light.y + light.z;
-      return sum;
-    };
-    double expected = 0.0;
-    const std::vector<float> texels = dense.radiance->downloadFloats(0);
-    for (std::size_t i = 0; i < texels.size(); ++i) expected += i % 4 < 3 ? texels[i] * dense.unit : 0.0f;
-    CAPTURE(bricks);
-    CHECK(lightOf(sparse) == Approx(expected).epsilon(0.005));
-    CHECK(lightOf(sparse) > 1.2 * lightOf(direct));
-  }
-}
-
-TEST_CASE("images are finite with the camera outside of the octree, inside geometry, far from the origin") {
-  RenderOptions options;
-  options.width = options.height = 16;
-  const auto check = [&](const Scene& scene, const char* what) {
-    const FrameResult frame = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
-    const ImageBuffer& image = frame.outputs.at("final");
-    INFO(what);
-    CHECK(std::all_of(image.values().begin(), image.values().end(),
-                      [](float value) { return std::isfinite(value) && value >= 0.0f; }));
-  };
-  check(loadScene(sourceDirectory() / "scenes/stress/far_away.scene"), "far away");
-  for (const glm::dvec3& eye : {glm::dvec3(40, 3, 50), glm::dvec3(0.5, 0.005, 0.5)}) {
-    SceneBuilder builder;
-    builder.scene = litRoom(16, 16);
-    builder.look(eye, {0.5, 0.6, 0.2}, {0, 1, 0}, 0.7, 16, 16);
-    check(builder.scene, eye.x > 1.0 ? "outside" : "in the floor's voxels");
-  }
 }

@@ -23,44 +23,6 @@ std::vector<float> injected(const Scene& scene, int resolution, const char* prec
 
 }  // namespace
 
-TEST_CASE("a constant environment passes the weights of the cones unchanged") {
-  const glm::vec3 environment(0.5f, 1.0f, 2.0f);
-  const RadianceGrid empty = makeGrid(16, [](int, int, int) { return glm::vec4(0.0f); });
-  const Scene scene = emptyScene(environment);
-  for (const int cones : {1, 2, 5, 6, 16, 32}) {
-    const glm::vec3 radiance =
-        gather(scene, empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
-    for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-5));
-  }
-  const glm::vec3 published = gather(scene, empty, glm::vec3(0.1f), glm::vec3(0, 1, 0), {5, "published"});
-  for (int c = 0; c < 3; ++c) CHECK(published[c] == Approx(environment[c]).epsilon(1e-5));
-}
-
-TEST_CASE(
-    "a uniform grid of opacity and radiance returns L (1 - (1-a)^(d / voxel)) whatever the width of the "
-    "cone") {
-  // In a medium of opacity a per voxel the transmittance over a distance d is (1-a)^(d / voxel size), and the
-  // radiance that a ray collects is L times what is absorbed. The composite filter gives coarse voxels the
-  // opacity of their own size, plain means keep that of a finest voxel; either way wide cones see the same.
-  constexpr int kResolution = 64;
-  const double voxel = 2.0 / kResolution;
-  for (const char* filter : {"facing", "average", "trilinear"})
-    for (const float opacity : {0.02f, 0.1f, 0.3f}) {
-      const glm::vec3 radiance(1.0f, 2.0f, 0.5f);
-      const RadianceGrid grid =
-          filtered(uniformGrid(kResolution, glm::vec4(radiance * opacity, opacity)), filter);
-      for (const int cones : {1, 6, 64}) {  // the widest and narrow ones
-        for (const double distance : {0.1, 0.25, 0.5}) {
-          const double expected = 1.0 - std::pow(1.0 - opacity, distance / voxel);
-          const glm::vec3 gathered =
-              gather(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, {cones, "cosine", 0, 0, distance, 0.25});
-          INFO(filter << ", opacity " << opacity << ", cones " << cones << ", distance " << distance);
-          for (int c = 0; c < 3; ++c) CHECK(gathered[c] == Approx(radiance[c] * expected).epsilon(0.01));
-        }
-      }
-    }
-}
-
 TEST_CASE("an opaque wall fills the cones that face it with its radiance and hides what lies far behind") {
   // Everything beyond y = 0 is a wall of radiance 3; 24 voxels inside it is brighter, which must not be seen.
   const RadianceGrid grid = filtered(makeGrid(64, [](int, int y, int) {
@@ -222,22 +184,6 @@ TEST_CASE(
   CHECK(occupied > 20);
 }
 
-TEST_CASE("a lit plane stores albedo / pi times its irradiance in its voxels") {
-  SceneBuilder builder;
-  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
-  builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
-  const std::vector<float> texels = injected(builder.scene, 16);
-  const double expected = 0.6 / 3.14159265358979 * 3.0;
-  int occupied = 0;
-  for (std::size_t i = 0; i < texels.size(); i += 4) {
-    if (texels[i + 3] == 0.0f) continue;
-    ++occupied;
-    CHECK(texels[i] == Approx(expected).epsilon(0.002));  // albedo is kept in half floats
-    CHECK(texels[i + 3] == Approx(1.0f));
-  }
-  CHECK(occupied >= 14 * 14);
-}
-
 TEST_CASE(
     "a dim area light keeps its light in a grid with one 10^9 times as bright, in half floats with one of 10^6") {
   // Two spots that light a patch of the floor each. What the dim one lights alone is that of a scene without
@@ -383,26 +329,29 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("ambient light adds albedo / pi times its irradiance to every occupied voxel, lit or not") {
+TEST_CASE("every occupied voxel stores albedo / pi times its irradiance, of lights and of ambient light") {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
   builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
   for (const char* precision : {"float", "half"})
-    for (const bool lights : {true, false}) {
-      InjectSettings settings;
-      settings.precision = precision;
-      settings.lights = lights;
-      settings.ambient = 2.0;
-      const RadianceGrid grid = injectedGrid(builder.scene, 16, settings);
-      const std::vector<float> texels = grid.radiance->downloadFloats(0);
-      int occupied = 0;
-      for (std::size_t i = 0; i < texels.size(); i += 4) {
-        if (texels[i + 3] == 0.0f) continue;
-        ++occupied;
-        CHECK(texels[i] * grid.unit == Approx(0.6 / kPi * (2.0 + (lights ? 3.0 : 0.0))).epsilon(0.002));
+    for (const double ambient : {0.0, 2.0})
+      for (const bool lights : {true, false}) {
+        InjectSettings settings;
+        settings.precision = precision;
+        settings.lights = lights;
+        settings.ambient = ambient;
+        const RadianceGrid grid = injectedGrid(builder.scene, 16, settings);
+        const auto voxels = grid.radiance->downloadFloats(0);
+        int occupied = 0;
+        for (std::size_t i = 0; i < voxels.size(); i += 4) {
+          if (voxels[i + 3] == 0.0f) continue;
+          ++occupied;
+          CHECK(voxels[i + 3] == Approx(1.0f));
+          // Albedo is kept in half floats.
+          CHECK(voxels[i] * grid.unit == Approx(0.6 / kPi * (ambient + (lights ? 3.0 : 0.0))).epsilon(0.002));
+        }
+        CHECK(occupied >= 14 * 14);
       }
-      CHECK(occupied >= 14 * 14);
-    }
 }
 
 TEST_CASE("injection lists the bricks that hold fragments, each once, and how to dispatch over them") {
@@ -434,23 +383,38 @@ TEST_CASE("injection lists the bricks that hold fragments, each once, and how to
 
 TEST_CASE("the filter gives the same bits whether it follows the occupied bricks or looks at every voxel") {
   const Scene scene = litRoom(16, 16);
-  for (const char* opacity : {"facing", "average", "trilinear"})
-    for (const int resolution : {5, 32, 50}) {
-      const auto levels = [&](bool follow) {
-        RadianceGrid grid = injectedGrid(scene, resolution);
-        REQUIRE(grid.occupied.bricks != nullptr);
-        if (!follow) grid.occupied = {};
-        // Textures from the pool may contain anything.
-        const int count = grid.radiance->description().levels;
-        for (int level = 1; level < count; ++level) grid.radiance->clear(glm::vec4(7.0f), level);
-        grid = filtered(grid, opacity);
-        std::vector<std::vector<float>> texels;
-        for (int level = 0; level < count; ++level) texels.push_back(grid.radiance->downloadFloats(level));
-        return texels;
+  // The texels of all levels. Textures from the pool may contain anything.
+  const auto levels = [](auto grid, const auto& texturesOf, bool follow, const auto& filter) {
+    REQUIRE(grid.occupied.bricks != nullptr);
+    if (!follow) grid.occupied = {};
+    for (const gpu::TextureRef& texture : texturesOf(grid))
+      for (int level = 1; level < texture->description().levels; ++level)
+        texture->clear(glm::vec4(7.0f), level);
+    grid = filter(grid);
+    std::vector<std::vector<float>> texels;
+    for (const gpu::TextureRef& texture : texturesOf(grid))
+      for (int level = 0; level < texture->description().levels; ++level)
+        texels.push_back(texture->downloadFloats(level));
+    return texels;
+  };
+  for (const int resolution : {5, 32, 50}) {
+    CAPTURE(resolution);
+    for (const char* opacity : {"facing", "average", "trilinear"}) {
+      const auto run = [&](bool follow) {
+        return levels(
+            injectedGrid(scene, resolution), [](const auto& grid) { return std::vector{grid.radiance}; },
+            follow, [&](const auto& grid) { return filtered(grid, opacity); });
       };
-      INFO(opacity << ", " << resolution << " voxels");
-      CHECK(levels(true) == levels(false));
+      CAPTURE(opacity);
+      CHECK(run(true) == run(false));
     }
+    const auto six = [&](bool follow) {
+      return levels(
+          injectedDirections(scene, resolution), [](const auto& grid) { return grid.faces; }, follow,
+          [](const auto& grid) { return filteredDirections(grid); });
+    };
+    CHECK(six(true) == six(false));
+  }
 }
 
 TEST_CASE("injection takes memory for the fragments and a fifth of a byte a voxel beside its grid") {

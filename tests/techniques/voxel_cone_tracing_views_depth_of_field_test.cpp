@@ -232,17 +232,6 @@ TEST_CASE("through voxels of 16 mm the lens is nearer to the path tracer's than 
   CHECK(lens < 0.75 * rasterised);
 }
 
-TEST_CASE("voxels that hold the media are refused beside the media themselves, through a lens too") {
-  const Scene scene = seenThrough({});
-  RadianceGrid grid = cones::uniformGrid(8, glm::vec4(0.0f));
-  grid.holdsMedia = true;
-  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "lens", scene, snapshotOf(scene, 0.0));
-  harness.setInput("grid", grid);
-  harness.setInput("media", ScatteringGrid{});
-  CHECK_THAT(messageOf<Error>([&] { harness.run(); }),
-             Contains("already contain the media") && Contains("store_media off"));
-}
-
 TEST_CASE(
     "the lens sees a lamp of the radiance L as bright as it is where injection takes emission, and else black") {
   SceneBuilder builder;

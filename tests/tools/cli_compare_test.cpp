@@ -19,10 +19,8 @@ void writeConstant(const std::filesystem::path& file, float direct, float indire
 }
 
 nlohmann::json compareAsJson(const Workplace& place, const std::string& options) {
-  const CommandResult result = runCommand("lumivox compare '" + place.file("a.exr") + "' '" +
-                                          place.file("b.exr") + "' --json " + options);
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result =
+      ran("compare", place.file("a.exr"), place.file("b.exr"), "--json", Raw{options});
   return nlohmann::json::parse(result.output).at("layers");
 }
 
@@ -39,8 +37,7 @@ TEST_CASE("compare gives each common layer its own error") {
   CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
   CHECK(layers[0]["mean_ratio"]["value"].get<double>() == Approx(1.0 / 0.75));
   CHECK(layers[1]["rmse"]["value"].get<double>() == 0.0);
-  const CommandResult table =
-      runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("b.exr") + "'");
+  const CommandResult table = typed("compare", place.file("a.exr"), place.file("b.exr"));
   CHECK(contains(table.output, "indirect_diffuse"));
 }
 
@@ -52,10 +49,9 @@ TEST_CASE("compare takes a chosen layer, or two layers of different names, and c
   const auto crossed = compareAsJson(place, "--layer direct=indirect_diffuse");
   CHECK(crossed[0]["rmse"]["value"].get<double>() == Approx(0.5));
   const std::string both = "'" + place.file("a.exr") + "' '" + place.file("b.exr") + "'";
-  CHECK(runCommand("lumivox compare " + both + " --rmse-at-most 0.3").exitCode == 0);
-  CHECK(runCommand("lumivox compare " + both + " --rmse-at-most 0.2").exitCode == 1);
-  checkRefused(runCommand("lumivox compare " + both + " --layer indirekt_diffuse"),
-               "did you mean 'indirect_diffuse'");
+  CHECK(typed("compare", Raw{both}, "--rmse-at-most 0.3").exitCode == 0);
+  CHECK(typed("compare", Raw{both}, "--rmse-at-most 0.2").exitCode == 1);
+  checkRefused(typed("compare", Raw{both}, "--layer indirekt_diffuse"), "did you mean 'indirect_diffuse'");
 }
 
 TEST_CASE("NaN and infinite pixels are counted and do not spread into the numbers") {
@@ -92,16 +88,13 @@ TEST_CASE("compare refuses images of other sizes and files without a layer in co
   writeExr(place.path() / "small.exr", small);
   writeExr(place.path() / "other.exr", other);
   writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
-  checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("small.exr") + "'"),
-               "4 x 4");
-  checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("other.exr") + "'"),
-               "no layer in common");
+  checkRefused(typed("compare", place.file("a.exr"), place.file("small.exr")), "4 x 4");
+  checkRefused(typed("compare", place.file("a.exr"), place.file("other.exr")), "no layer in common");
 }
 
 TEST_CASE("compare says of a PNG that it holds no linear radiance, and what to give in its place") {
   const Workplace place;
-  const CommandResult result =
-      runCommand("lumivox compare '" + place.file("a.png") + "' '" + place.file("b.png") + "'");
+  const CommandResult result = typed("compare", place.file("a.png"), place.file("b.png"));
   checkRefused(result, "no linear radiance");
   CHECK(contains(result.errors, "-o NAME.exr"));
 }
@@ -116,9 +109,7 @@ TEST_CASE("an EXR that is missing, empty, cut short or something else gives one 
   place.write("text.exr", "scene \"no image\" {}\n");
   for (const char* name : {"missing.exr", "empty.exr", "cut.exr", "head.exr", "text.exr"}) {
     INFO(name);
-    checkRefused(runCommand("lumivox compare '" + place.file(name) + "' '" + place.file("a.exr") + "'"),
-                 name);
-    checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file(name) + "'"),
-                 name);
+    checkRefused(typed("compare", place.file(name), place.file("a.exr")), name);
+    checkRefused(typed("compare", place.file("a.exr"), place.file(name)), name);
   }
 }

@@ -21,17 +21,13 @@ struct Swept {
   std::string store;
   Swept() : store(place.file("results.sqlite")) {
     place.write("direct.pipeline", kDirect);
-    const CommandResult result =
-        runCommand("lumivox sweep '" + place.scene() + "' --pipeline '" + place.file("direct.pipeline") +
-                   "' '" + committedPipeline("voxel_cone_tracing") +
-                   "' -q --set cones=4 --set resolution=8 --no-sweep --spp 64 "
-                   "--subpixels 4 --repeats 3 --store '" +
-                   store + "'");
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+    const CommandResult result = ran(
+        "sweep", place.scene(), "--pipeline", place.file("direct.pipeline"),
+        committedPipeline("voxel_cone_tracing"),
+        "-q --set cones=4 --set resolution=8 --no-sweep --spp 64 --subpixels 4 --repeats 3 --store", store);
   }
   CommandResult results(const std::string& what) const {
-    return runCommand("lumivox results " + what + " --store '" + store + "'");
+    return typed("results", Raw{what}, "--store", store);
   }
   nlohmann::json json(const std::string& what) const {
     const CommandResult result = results(what + " --json");
@@ -80,8 +76,7 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
 TEST_CASE("comparisons that make no sense are refused with what was expected") {
   const Workplace place;
   const auto refused = [&](const std::string& arguments, const std::string& named) {
-    checkRefused(runCommand("lumivox results " + arguments + " --store '" + place.file("none.sqlite") + "'"),
-                 named);
+    checkRefused(typed("results", Raw{arguments}, "--store", place.file("none.sqlite")), named);
   };
   refused("equal-time --frame-time -3ms", "--frame-time '-3ms'");
   refused("equal-time --budget 16ms", "a budget is time for measuring; expected --frame-time 16ms");
@@ -136,11 +131,8 @@ TEST_CASE("the matrix of explain fits into a terminal of 100 columns, whatever p
       "  pass march volumetric_smoke.march { gbuffer gbuffer  media smoke.media  shadow shadow.depth  "
       "resolution full }\n"
       "  output scattered march.scattered\n}\n");
-  const CommandResult result =
-      runCommand("lumivox explain -q --repeats 1 '" + place.scene() + "' '" + place.file(longName) +
-                 "' --resolution 16x16 --pipeline '" + place.file("smoke_alone.pipeline") + "'");
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result = ran("explain -q --repeats 1", place.scene(), place.file(longName),
+                                   "--resolution 16x16 --pipeline", place.file("smoke_alone.pipeline"));
   CHECK(contains(result.output, "first ms"));
   CHECK(std::regex_search(result.output, std::regex("xx\\.\\. +3/3")));
   CHECK(contains(result.output, "smoke_alone does not suit room: "));
@@ -154,16 +146,13 @@ TEST_CASE("the matrix of explain fits into a terminal of 100 columns, whatever p
 TEST_CASE("explain of one scene and one pipeline goes without times when it is told to") {
   const Workplace place;
   place.write("direct.pipeline", kDirect);
-  const CommandResult result = runCommand("lumivox explain -q --no-times '" + place.scene() + "' '" +
-                                          place.file("direct.pipeline") + "'");
+  const CommandResult result = typed("explain -q --no-times", place.scene(), place.file("direct.pipeline"));
   INFO(result.errors);
   CHECK(result.exitCode == 0);
   CHECK(contains(result.output, "3 of 3 passes kept"));
   CHECK_FALSE(contains(result.output, "whole frame"));
-  checkRefused(runCommand("lumivox explain"), "expected a scene's text, or --all");
-  checkRefused(runCommand("lumivox explain --all '" + place.scene() + "'"),
-               "--all takes every committed scene");
-  checkRefused(runCommand("lumivox explain '" + place.scene() + "' '" + place.file("direct.pipeline") +
-                          "' --set sampels=2"),
+  checkRefused(typed("explain"), "expected a scene's text, or --all");
+  checkRefused(typed("explain --all", place.scene()), "--all takes every committed scene");
+  checkRefused(typed("explain", place.scene(), place.file("direct.pipeline"), "--set sampels=2"),
                "did you mean 'samples'");
 }

@@ -39,9 +39,8 @@ TEST_CASE("peak rates are measured, told with the device's limits, and kept in t
   CHECK(contains(text.output, "float_operations"));
   CHECK(contains(text.output, "operations/s"));
   CHECK(contains(text.output, "Largest volume"));
-  checkRefused(runCommand("lumivox device --only sampling --store " + store),
-               "texture_samples_d2_rgba8_nearest");
-  checkRefused(runCommand("lumivox device --repeats 0 --store " + store), "--repeats");
+  checkRefused(typed("device --only sampling --store", Raw{store}), "texture_samples_d2_rgba8_nearest");
+  checkRefused(typed("device --repeats 0 --store", Raw{store}), "--repeats");
 }
 
 TEST_CASE(
@@ -50,11 +49,9 @@ TEST_CASE(
   const std::string store = place.file("results.sqlite");
   place.write("quick.pipeline", kPipeline);
   const auto report = [&](const std::string& more) {
-    const CommandResult result = runCommand(
-        "lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
-        "' -q --spp 16 --subpixels 1 --seeds 2 --repeats 2 -o '" + place.file("page.html") + "' " + more);
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+    const CommandResult result =
+        ran("report", place.scene(), "--pipeline", place.file("quick.pipeline"),
+            "-q --spp 16 --subpixels 1 --seeds 2 --repeats 2 -o", place.file("page.html"), Raw{more});
     return Json::parse(place.read("page.json"));
   };
   const Json without = report("");
@@ -63,10 +60,8 @@ TEST_CASE(
   if (draws) CHECK(contains(drawnPage(place.file("page.html")).at("html"), "<code>lumivox device</code>"));
   const bool counted = !without.at("scenes").at(0).at("points").at(0).contains("why_not_counted");
 
-  REQUIRE(runCommand("lumivox -q device --repeats 2 --only float_operations --only triangles --only draws "
-                     "--only image_writes_d2_rgba32f --store " +
-                     store)
-              .exitCode == 0);
+  ran("-q device --repeats 2 --only float_operations --only triangles --only draws --only image_writes_d2_rgba32f --store",
+      Raw{store});
   const Json with = report("--store " + store);
   CHECK(with.at("peak_rates").size() == 4);
   if (!counted) return skip("this driver takes GLSL, and operations are counted in SPIR-V");

@@ -15,10 +15,6 @@ using namespace lumivox::test;
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  return "'" + text + "'";
-}
-
 /// Mean of the bytes, 0 to 255.
 double meanGrey(const ByteImage& image) {
   double sum = 0.0;
@@ -50,51 +46,45 @@ std::string roomWithLamp(double share) {
 
 TEST_CASE("an image says its exposure in the terminal, and that number gives the same bytes again") {
   const Workplace place;
-  const std::string command = "lumivox render " + quoted(place.scene()) + " " +
-                              quoted(committedPipeline("direct_lighting")) + " -o " +
-                              quoted(place.file("a.png"));
-  const CommandResult automatic = runCommand(command);
-  REQUIRE(automatic.exitCode == 0);
+  const auto bytes = [&](const auto&... words) {
+    place.rendered("direct_lighting", "-o", place / "a.png", words...);
+    return place.read("a.png");
+  };
+  const CommandResult automatic =
+      ran("render", place.scene(), committedPipeline("direct_lighting"), "-o", place / "a.png");
   std::smatch found;
   REQUIRE(std::regex_search(automatic.errors, found, std::regex("a\\.png: .* ms, ([+-][0-9.]+) EV")));
-  const std::string bytes = place.read("a.png");
-  REQUIRE(runCommand(command + " -q --exposure auto --tone filmic").exitCode == 0);
-  CHECK(place.read("a.png") == bytes);
-  REQUIRE(runCommand(command + " -q --exposure " + found[1].str()).exitCode == 0);
-  CHECK(place.read("a.png") == bytes);
-  const double own = meanGrey(readByteImage(place.path() / "a.png"));
+  const std::string first = place.read("a.png");
+  const double own = meanGrey(readByteImage(place / "a.png"));
+  CHECK(bytes("--exposure auto --tone filmic") == first);
+  CHECK(bytes("--exposure", found[1].str()) == first);
   // Its direct light alone, at the exposure of all light.
   CHECK(own > 50.0);
   CHECK(own < 180.0);
-  REQUIRE(runCommand(command + " -q --exposure=-3EV").exitCode == 0);
-  CHECK(meanGrey(readByteImage(place.path() / "a.png")) < 0.6 * own);
-  REQUIRE(runCommand(command + " -q --tone srgb").exitCode == 0);
-  CHECK(place.read("a.png") != bytes);
+  bytes("--exposure=-3EV");
+  CHECK(meanGrey(readByteImage(place / "a.png")) < 0.6 * own);
+  CHECK(bytes("--tone srgb") != first);
 }
 
 TEST_CASE(
     "whoever makes an image of a scene shows it at the same exposure, also from where nobody stood before") {
   const Workplace place;
-  const std::string reference = "lumivox reference " + quoted(place.scene()) + " --spp 8 -o ";
-  const auto told = [](const CommandResult& result) {
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+  const auto told = [](const auto&... words) {
+    const CommandResult result = ran(words...);
     std::smatch found;
     REQUIRE(std::regex_search(result.errors, found, std::regex("([+-][0-9.]+) EV")));
     return found[1].str();
   };
-  const auto render = [&](const char* pipeline, const std::string& options) {
-    return told(runCommand("lumivox render " + quoted(place.scene()) + " " +
-                           quoted(committedPipeline(pipeline)) + " -o " + quoted(place.file("a.png")) +
-                           options));
+  const auto render = [&](const char* pipeline, const char* options) {
+    return told("render", place.scene(), committedPipeline(pipeline), options, "-o", place / "a.png");
   };
-  const std::string ofReference = told(runCommand(reference + quoted(place.file("t.png"))));
+  const std::string ofReference = told("reference", place.scene(), "--spp 8 -o", place / "t.png");
   CHECK(render("direct_lighting", "") == ofReference);
   CHECK(render("screen_space", "") == ofReference);
-  CHECK(render("direct_lighting", " --subpixels 1 --resolution 24x16") == ofReference);
+  CHECK(render("direct_lighting", "--subpixels 1 --resolution 24x16") == ofReference);
   // Close to a wall that is lit, and the first exposure again: what is kept for one is not taken for the
   // other.
-  const std::string elsewhere = " --eye 0,0,-0.4 --target 0,0,-1";
+  const char* elsewhere = "--eye 0,0,-0.4 --target 0,0,-1";
   const std::string close = render("direct_lighting", elsewhere);
   CHECK(close != ofReference);
   CHECK(render("screen_space", elsewhere) == close);
@@ -103,68 +93,57 @@ TEST_CASE(
 
 TEST_CASE("an image is shown at the exposure of another, which its file tells or its pixels") {
   const Workplace place;
-  const std::string render = "lumivox -q render " + quoted(place.scene()) + " " +
-                             quoted(committedPipeline("direct_lighting")) + " --subpixels 1 -o ";
-  const auto bytesAt = [&](const std::string& exposure) {
-    const CommandResult result = runCommand(render + quoted(place.file("a.png")) + " --exposure=" + exposure);
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+  const auto bytesAt = [&](const auto& exposure) {
+    place.rendered("direct_lighting", "--subpixels 1 -o", place / "a.png", "--exposure", exposure);
     return place.read("a.png");
   };
   const std::string atOne = bytesAt("1.25");
-  REQUIRE(runCommand(render + quoted(place.file("b.png")) + " --exposure 1.25").exitCode == 0);
-  CHECK(readPngAttributes(place.path() / "b.png").at("lumivox.exposure_ev") == "1.25");
-  CHECK(bytesAt(quoted(place.file("b.png"))) == atOne);
-  REQUIRE(runCommand("lumivox -q reference " + quoted(place.scene()) + " --spp 4 --exposure 1.25 -o " +
-                     quoted(place.file("t.exr")))
-              .exitCode == 0);
-  CHECK(bytesAt(quoted(place.file("t.exr"))) == atOne);
+  place.rendered("direct_lighting", "--subpixels 1 --exposure 1.25 -o", place / "b.png");
+  CHECK(readPngAttributes(place / "b.png").at("lumivox.exposure_ev") == "1.25");
+  CHECK(bytesAt(place / "b.png") == atOne);
+  ran("-q reference", place.scene(), "--spp 4 --exposure 1.25 -o", place / "t.exr");
+  CHECK(bytesAt(place / "t.exr") == atOne);
   // An EXR that does not tell: 0.18 / 0.72 is two stops down.
   LayeredImage plain;
   plain.layers[""] = ImageBuffer(4, 4, 3, 0.72f);
-  writeExr(place.path() / "plain.exr", plain);
-  CHECK(bytesAt(quoted(place.file("plain.exr"))) == bytesAt("-2"));
+  writeExr(place / "plain.exr", plain);
+  CHECK(bytesAt(place / "plain.exr") == bytesAt("-2"));
   // A PNG of somebody else, one that is none, one that is not there, and the image itself.
-  writePng(place.path() / "foreign.png", plain.layers[""]);
+  writePng(place / "foreign.png", plain.layers[""]);
   place.write("text.png", "a text");
-  const auto refused = [&](const std::string& file, const std::string& why) {
-    checkRefused(runCommand(render + quoted(place.file("c.png")) + " --exposure " + quoted(place.file(file))),
-                 why);
+  const auto refused = [&](const char* file, const auto&... facts) {
+    checkRefused(place.render("direct_lighting", "-o", place / "c.png", "--exposure", place / file),
+                 facts...);
     CHECK_FALSE(place.has("c.png"));
   };
-  refused("foreign.png", "foreign.png: tells no exposure");
-  refused("text.png", "text.png: is not a PNG");
+  refused("foreign.png", "foreign.png", "exposure");
+  refused("text.png", "text.png", "PNG");
   refused("absent.png", "absent.png");
-  refused("a.jpg", "expected auto or a number of EV");
-  checkRefused(
-      runCommand(render + quoted(place.file("b.png")) + " --exposure " + quoted(place.file("b.png"))),
-      "was read for the same work");
+  refused("a.jpg", "auto", "EV");
+  checkRefused(place.render("direct_lighting", "-o", place / "b.png", "--exposure", place / "b.png"), "b.png",
+               "read");
 }
 
 TEST_CASE("edges of images to look at are smooth, and an EXR holds a frame as it is unless somebody asks") {
   const Workplace place;
-  const std::string render = "lumivox -q render " + quoted(place.scene()) + " " +
-                             quoted(committedPipeline("direct_lighting")) + " --exposure 1 -o ";
-  const auto made = [&](const char* name, const std::string& options) {
-    const CommandResult result = runCommand(render + quoted(place.file(name)) + options);
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+  const auto made = [&](const char* name, const char* options) {
+    place.rendered("direct_lighting", "--exposure 1", options, "-o", place / name);
   };
   made("frame.exr", "");
-  made("four.exr", " --subpixels 4");
-  made("frame.png", " --subpixels 1");
+  made("four.exr", "--subpixels 4");
+  made("frame.png", "--subpixels 1");
   made("smooth.png", "");
-  const ImageBuffer frame = readExr(place.path() / "frame.exr").layers.at(""),
-                    four = readExr(place.path() / "four.exr").layers.at("");
-  const auto shown = [&](const char* name) { return readByteImage(place.path() / name).values; };
+  const ImageBuffer frame = readExr(place / "frame.exr").layers.at(""),
+                    four = readExr(place / "four.exr").layers.at("");
+  const auto shown = [&](const char* name) { return readByteImage(place / name).values; };
   CHECK(shown("frame.png") == displayBytes(frame, {1.0, kShownTone}));
   CHECK(shown("smooth.png") == displayBytes(four, {1.0, kShownTone}));
   CHECK(shown("smooth.png") != shown("frame.png"));
   // Smoothed and not another picture.
   CHECK(meanOf(four) == Approx(meanOf(frame)).epsilon(0.05));
-  checkRefused(runCommand(render + quoted(place.file("x.png")) + " --subpixels 4 --accumulate 3"),
+  checkRefused(place.render("direct_lighting", "--subpixels 4 --accumulate 3 -o", place / "x.png"),
                "--accumulate");
-  checkRefused(runCommand(render + quoted(place.file("x.png")) + " --subpixels 0"), "--subpixels");
+  checkRefused(place.render("direct_lighting", "--subpixels 0 -o", place / "x.png"), "--subpixels");
 }
 
 TEST_CASE(
@@ -179,44 +158,36 @@ TEST_CASE(
               "  output direct direct.radiance\n"
               "  output cubes view.image\n"
               "}\n");
-  const std::string command =
-      "lumivox -q render " + quoted(place.scene()) + " " + quoted(place.file("cubes.pipeline"));
-  REQUIRE(runCommand(command + " -o " + quoted(place.file("a.exr"))).exitCode == 0);
-  LayeredImage image = readExr(place.path() / "a.exr");
+  const auto render = [&](const char* options, const char* name) {
+    ran("-q render", place.scene(), place / "cubes.pipeline", options, "-o", place / name);
+  };
+  render("", "a.exr");
+  LayeredImage image = readExr(place / "a.exr");
   CHECK_FALSE(image.layers.at("cubes").isRadiance());
   CHECK(image.layers.at("direct").isRadiance());
-  REQUIRE(
-      runCommand(command + " --subpixels 1 --output cubes -o " + quoted(place.file("cubes.png"))).exitCode ==
-      0);
-  const ByteImage shown = readByteImage(place.path() / "cubes.png");
+  render("--subpixels 1 --output cubes", "cubes.png");
+  const ByteImage shown = readByteImage(place / "cubes.png");
   CHECK(shown.values == displayBytes(image.layers.at("cubes")));
   // What somebody asks for holds.
-  REQUIRE(
-      runCommand(command + " --exposure=-2 --output cubes -o " + quoted(place.file("dark.png"))).exitCode ==
-      0);
-  CHECK(meanGrey(readByteImage(place.path() / "dark.png")) < 0.7 * meanGrey(shown));
-  const CommandResult compared =
-      runCommand("lumivox compare " + quoted(place.file("a.exr")) + " " + quoted(place.file("a.exr")));
-  CHECK(contains(unwrapped(compared.output), "as they are"));
+  render("--exposure=-2 --output cubes", "dark.png");
+  CHECK(meanGrey(readByteImage(place / "dark.png")) < 0.7 * meanGrey(shown));
+  CHECK(contains(unwrapped(typed("compare", place / "a.exr", place / "a.exr").output), "as they are"));
 }
 
 TEST_CASE("exposure and tone curve change no EXR, and the reference's header says its exposure") {
   const Workplace place;
-  for (const char* name : {"a.exr", "b.exr"})
-    REQUIRE(runCommand("lumivox render " + quoted(place.scene()) + " " +
-                       quoted(committedPipeline("direct_lighting")) + " -q -o " + quoted(place.file(name)) +
-                       (name[0] == 'b' ? " --exposure 4 --tone filmic" : ""))
-                .exitCode == 0);
-  const LayeredImage a = readExr(place.path() / "a.exr"), b = readExr(place.path() / "b.exr");
+  place.rendered("direct_lighting", "-o", place / "a.exr");
+  place.rendered("direct_lighting", "--exposure 4 --tone filmic -o", place / "b.exr");
+  const LayeredImage a = readExr(place / "a.exr"), b = readExr(place / "b.exr");
   for (const auto& [name, image] : a.layers) CHECK(image.values() == b.layers.at(name).values());
 
-  const std::string reference =
-      "lumivox reference " + quoted(place.scene()) + " -q --spp 8 --resolution 16x16 -o ";
-  REQUIRE(runCommand(reference + quoted(place.file("t.exr"))).exitCode == 0);
-  REQUIRE(runCommand(reference + quoted(place.file("t.png"))).exitCode == 0);
-  const std::string kept = readExrAttributes(place.path() / "t.exr").at("lumivox.exposure_ev");
+  const auto reference = [&](const char* name, const std::string& exposure) {
+    ran("reference", place.scene(), "-q --spp 8 --resolution 16x16 --exposure", exposure, "-o", place / name);
+  };
+  reference("t.exr", "auto");
+  reference("t.png", "auto");
   const std::string bytes = place.read("t.png");
-  REQUIRE(runCommand(reference + quoted(place.file("t.png")) + " --exposure " + kept).exitCode == 0);
+  reference("t.png", readExrAttributes(place / "t.exr").at("lumivox.exposure_ev"));
   CHECK(place.read("t.png") == bytes);
 }
 
@@ -227,15 +198,13 @@ TEST_CASE("compare takes the exposure of the reference's header, and says which 
     image.layers["full"] = ImageBuffer(16, 16, 3, value);
     image.layers["direct"] = ImageBuffer(16, 16, 3, 0.5f * value);
     if (!exposure.empty()) image.attributes["lumivox.exposure_ev"] = exposure;
-    writeExr(place.path() / name, image);
+    writeExr(place / name, image);
   };
   write("a.exr", 0.9f, "");
   write("b.exr", 0.72f, "-1.50");
   const auto json = [&](const std::string& options) {
-    const CommandResult result = runCommand("lumivox compare " + quoted(place.file("a.exr")) + " " +
-                                            quoted(place.file("b.exr")) + " --json " + options);
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+    const CommandResult result =
+        ran("compare", place.file("a.exr"), place.file("b.exr"), "--json", Raw{options});
     return nlohmann::json::parse(result.output);
   };
   const auto kept = json("");
@@ -253,13 +222,11 @@ TEST_CASE("compare takes the exposure of the reference's header, and says which 
     CHECK(own["layers"][0]["exposure_ev"] == -2.0);
     CHECK(contains(own["exposure_from"], "all pixels of the layer 'full'"));
   }
-  const CommandResult table =
-      runCommand("lumivox compare " + quoted(place.file("a.exr")) + " " + quoted(place.file("b.exr")) +
-                 " --sheet " + quoted(place.file("s.png")) + " --tone filmic");
-  REQUIRE(table.exitCode == 0);
+  const CommandResult table = ran("compare", place.file("a.exr"), place.file("b.exr"), "--sheet",
+                                  place.file("s.png"), "--tone filmic");
   CHECK(contains(table.output, "SSIM and FLIP LDR are taken at -2.00 EV (all pixels of"));
   // Three panels of at least 160 pixels for each of two layers.
-  const ByteImage sheet = readByteImage(place.path() / "s.png");
+  const ByteImage sheet = readByteImage(place / "s.png");
   CHECK(sheet.width == 3 * 166 + 6);
   CHECK(sheet.height > 2 * 160);
 }
@@ -271,13 +238,10 @@ TEST_CASE("a lamp that fills 1 to 20 % of the image turns nothing else black") {
   for (const double share : {0.01, 0.05, 0.1, 0.2}) {
     CAPTURE(share);
     place.write("lamp.scene", roomWithLamp(share));
-    const std::string command = "lumivox reference " + quoted(place.file("lamp.scene")) + " -q --spp 16 -o ";
-    REQUIRE(runCommand(command + quoted(place.file("l.exr"))).exitCode == 0);
-    const CommandResult made = runCommand(command + quoted(place.file("l.png")));
-    INFO(made.errors);
-    REQUIRE(made.exitCode == 0);
-    const ImageBuffer full = readExr(place.path() / "l.exr").layers.at("full");
-    const ByteImage shown = readByteImage(place.path() / "l.png");
+    for (const char* name : {"l.exr", "l.png"})
+      ran("reference", place / "lamp.scene", "-q --spp 16 -o", place / name);
+    const ImageBuffer full = readExr(place / "l.exr").layers.at("full");
+    const ByteImage shown = readByteImage(place / "l.png");
     std::size_t lamp = 0, others = 0;
     double grey = 0.0;
     for (std::size_t i = 0; i < full.pixelCount(); ++i) {
@@ -296,17 +260,14 @@ TEST_CASE("a lamp that fills 1 to 20 % of the image turns nothing else black") {
 
 TEST_CASE("an animation does not flash: its images become brighter and darker only as their radiance does") {
   const Workplace place;
-  const std::string command = "lumivox render " +
-                              quoted((sourceDirectory() / "scenes/spinning_box.scene").string()) + " " +
-                              quoted(committedPipeline("voxel_cone_tracing")) +
-                              " -q --resolution 48x48 --set resolution=16 --frames 0..11 --fps 4 -o ";
-  REQUIRE(runCommand(command + quoted(place.file("f##.png"))).exitCode == 0);
-  REQUIRE(runCommand(command + quoted(place.file("f##.exr"))).exitCode == 0);
+  for (const char* name : {"f##.png", "f##.exr"})
+    ran("render", sourceDirectory() / "scenes/spinning_box.scene", committedPipeline("voxel_cone_tracing"),
+        "-q --resolution 48x48 --set resolution=16 --frames 0..11 --fps 4 -o", place / name);
   double leastGrey = 255.0, mostGrey = 0.0, leastMean = 1e9, mostMean = 0.0;
   for (int frame = 0; frame <= 11; ++frame) {
     const std::string stem = fmt::format("f{:02}", frame);
-    const double grey = meanGrey(readByteImage(place.path() / (stem + ".png"))),
-                 mean = meanOf(readExr(place.path() / (stem + ".exr")).layers.at(""));
+    const double grey = meanGrey(readByteImage(place / (stem + ".png"))),
+                 mean = meanOf(readExr(place / (stem + ".exr")).layers.at(""));
     leastGrey = std::min(leastGrey, grey);
     mostGrey = std::max(mostGrey, grey);
     leastMean = std::min(leastMean, mean);
@@ -321,11 +282,11 @@ TEST_CASE("an animation does not flash: its images become brighter and darker on
 TEST_CASE("the frames of a sequence share an exposure, whichever of them is darkest, and keep their bits") {
   const Workplace place;
   // The camera turns from the bulb's wall, close, to the dark corner.
-  const std::string command = "lumivox render " + quoted(place.scene()) + " " +
-                              quoted(committedPipeline("direct_lighting")) +
-                              " --resolution 12x8 --subpixels 1 --frames 0..7 ";
-  const CommandResult result = runCommand(command + "-o " + quoted(place.file("f#.png")));
-  REQUIRE(result.exitCode == 0);
+  const auto made = [&](const char* options, const char* name) {
+    return ran("render", place.scene(), committedPipeline("direct_lighting"),
+               "--resolution 12x8 --subpixels 1 --frames 0..7", options, "-o", place / name);
+  };
+  const CommandResult result = made("", "f#.png");
   const std::regex told("f[0-7]\\.png: .* ms, ([+-][0-9.]+) EV");
   std::set<std::string> exposures;
   int count = 0;
@@ -334,7 +295,7 @@ TEST_CASE("the frames of a sequence share an exposure, whichever of them is dark
     exposures.insert((*one)[1].str());
   CHECK(count == 8);
   CHECK(exposures.size() == 1);
-  REQUIRE(runCommand(command + "-q --accumulate 2 -o " + quoted(place.file("g#.png"))).exitCode == 0);
+  made("-q --accumulate 2", "g#.png");
   for (int frame = 0; frame < 8; ++frame)
     CHECK(place.read(fmt::format("f{}.png", frame)) == place.read(fmt::format("g{}.png", frame)));
 }
@@ -342,73 +303,61 @@ TEST_CASE("the frames of a sequence share an exposure, whichever of them is dark
 TEST_CASE(
     "a sheet shows the whole image and every output, or the frames of a sequence, without an image beside it") {
   const Workplace place;
-  const std::string command = "lumivox render " + quoted(place.scene()) + " " +
-                              quoted(committedPipeline("voxel_cone_tracing")) +
-                              " --set resolution=16 --sheet " + quoted(place.file("- a sheet.png"));
-  const CommandResult outputs = runCommand(command);
-  INFO(outputs.errors);
-  REQUIRE(outputs.exitCode == 0);
-  CHECK(contains(outputs.errors,
-                 "4 panels"));  // direct, final, which is the whole image, indirect_diffuse, indirect_glossy
-  const ByteImage sheet = readByteImage(place.path() / "- a sheet.png");
-  CHECK(sheet.width == 2 * 166 + 6);
+  const auto panels = [&](int count, const auto&... options) {
+    const CommandResult result = ran("render", place.scene(), committedPipeline("voxel_cone_tracing"),
+                                     "--set resolution=16 --sheet", place / "- a sheet.png", options...);
+    CHECK_THAT(result.errors, Tells(count, "panels"));
+    return readByteImage(place / "- a sheet.png").width;
+  };
+  CHECK(panels(4) ==
+        2 * 166 + 6);  // direct, final, which is the whole image, indirect_diffuse, indirect_glossy
   CHECK(place.fileCount() == 5);  // room.obj, room.mtl, room.scene, the sheet and the cache of references
-  const CommandResult frames = runCommand(command + " --frames 0..5 --resolution 30x20");
-  REQUIRE(frames.exitCode == 0);
-  CHECK(contains(frames.errors, "6 panels"));
-  CHECK(readByteImage(place.path() / "- a sheet.png").width == 3 * 166 + 6);
-  checkRefused(runCommand(command + " --sheet " + quoted(place.file("s.jpg"))), "--sheet");
+  CHECK(panels(6, "--frames 0..5 --resolution 30x20") == 3 * 166 + 6);
+  checkRefused(place.render("voxel_cone_tracing", "--sheet", place / "s.jpg"), "--sheet");
 }
 
 TEST_CASE("wrong exposures and tone curves are told by what was given and what was expected") {
   const Workplace place;
-  const std::string output = " -q -o " + quoted(place.file("x.png")) + " ";
+  const std::string direct = committedPipeline("direct_lighting");
   const std::string commands[] = {
-      "lumivox render " + quoted(place.scene()) + " " + quoted(committedPipeline("direct_lighting")) + output,
-      "lumivox reference " + quoted(place.scene()) + " --spp 2 --resolution 4x4" + output,
-      "lumivox report " + quoted(place.scene()) + " -q -o " + quoted(place.file("r.html")) + " "};
+      lineOf("lumivox", {}, "render", place.scene(), direct, "-q -o", place / "x.png"),
+      lineOf("lumivox", {}, "reference", place.scene(), "--spp 2 --resolution 4x4 -q -o", place / "x.png"),
+      lineOf("lumivox", {}, "report", place.scene(), "-q -o", place / "r.html")};
   for (const std::string& command : commands) {
     CAPTURE(command);
     for (const char* wrong : {"bright", "nan", "inf", "1e9", "-101", "2EVs", "2,5"}) {
       CAPTURE(wrong);
-      checkRefused(runCommand(command + "--exposure=" + wrong),
-                   "expected auto or a number of EV from -100 to 100");
+      checkRefused(runCommand(command + " --exposure=" + wrong), wrong, "auto", "EV", -100, 100);
     }
-    checkRefused(runCommand(command + "--exposure="), "--exposure");
-    checkRefused(runCommand(command + "--tone sRGB"), "linear");
+    checkRefused(runCommand(command + " --exposure="), "--exposure");
+    checkRefused(runCommand(command + " --tone sRGB"), "linear");
   }
   CHECK_FALSE(place.has("x.png"));
   CHECK_FALSE(place.has("r.html"));
-  checkRefused(runCommand("lumivox render " + quoted(place.scene()) + " " +
-                          quoted(committedPipeline("direct_lighting"))),
-               "--sheet or --video");
+  checkRefused(place.render("direct_lighting"), "--sheet", "--video");
 }
 
 TEST_CASE(
     "a video needs ffmpeg, frames and a name that ends in .mp4, and says so before it renders anything") {
   const Workplace place;
-  const std::string render = "lumivox render " + quoted(place.scene()) + " " +
-                             quoted(committedPipeline("direct_lighting")) + " -q --resolution 9x7 ";
-  checkRefused(runCommand(render + "--video " + quoted(place.file("v.mp4"))), "--frames");
-  checkRefused(runCommand(render + "--frames 0..2 --video " + quoted(place.file("v.gif"))), ".mp4");
-  const std::string lumivox = (binaryDirectory() / "bin/lumivox").string() + render.substr(7);
-  const CommandResult without = runCommand("env PATH=" + quoted(place.file("cache")) + " " + lumivox +
-                                           "--frames 0..2 --video " + quoted(place.file("v.mp4")));
-  checkRefused(without, "--video: ffmpeg, which encodes videos, is not on the PATH");
+  checkRefused(place.render("direct_lighting", "--video", place / "v.mp4"), "--frames");
+  checkRefused(place.render("direct_lighting", "--frames 0..2 --video", place / "v.gif"), ".mp4");
+  checkRefused(typed(Before{"env PATH='" + place.file("cache") + "'"}, "render -q", place.scene(),
+                     committedPipeline("direct_lighting"), "--frames 0..2 --video", place / "v.mp4"),
+               "--video", "ffmpeg", "PATH");
   CHECK_FALSE(place.has("v.mp4"));
 }
 
 TEST_CASE("what ffmpeg says when it fails is told, and the video that was there stays") {
   const Workplace place;
-  std::filesystem::create_directories(place.path() / "bin");
+  std::filesystem::create_directories(place / "bin");
   const auto with = [&](const std::string& script) {
     place.write("bin/ffmpeg", "#!/bin/sh\n" + script);
-    std::filesystem::permissions(place.path() / "bin/ffmpeg", std::filesystem::perms::owner_all);
+    std::filesystem::permissions(place / "bin/ffmpeg", std::filesystem::perms::owner_all);
     place.write("v.mp4", "an older video");
-    return runCommand("env PATH=" + quoted(place.file("bin")) + ":\"$PATH\" " +
-                      (binaryDirectory() / "bin/lumivox").string() + " render " + quoted(place.scene()) +
-                      " " + quoted(committedPipeline("direct_lighting")) +
-                      " -q --resolution 64x64 --frames 0..20 --video " + quoted(place.file("v.mp4")));
+    return typed(Before{"env PATH='" + place.file("bin") + "':\"$PATH\""}, "render -q", place.scene(),
+                 committedPipeline("direct_lighting"), "--resolution 64x64 --frames 0..20 --video",
+                 place / "v.mp4");
   };
   // At once, after the first bytes, after the last one; with more words than a pipe holds.
   for (const char* script :
@@ -420,17 +369,17 @@ TEST_CASE("what ffmpeg says when it fails is told, and the video that was there 
     CAPTURE(script);
     const CommandResult result = with(script);
     checkRefused(result, "no such encoder");
-    CHECK(contains(result.errors, "v.mp4: ffmpeg ended with exit code 3"));
+    CHECK_THAT(result.errors, Tells("v.mp4", "ffmpeg", 3));
     CHECK(place.read("v.mp4") == "an older video");
   }
-  checkRefused(with("cat > /dev/null\n"), "v.mp4: ffmpeg wrote no video");
-  checkRefused(with("kill -9 $$\n"), "killed by signal 9");
+  checkRefused(with("cat > /dev/null\n"), "v.mp4", "ffmpeg", "no video");
+  checkRefused(with("kill -9 $$\n"), "signal", 9);
   // What it is given: the bytes of the frames, and a file to write.
   REQUIRE(
       with("cat > \"" + place.file("frames") + "\"; for last; do :; done; echo done > \"${last#file:}\"\n")
           .exitCode == 0);
   CHECK(place.read("v.mp4") == "done\n");
-  CHECK(std::filesystem::file_size(place.path() / "frames") == 21 * 64 * 64 * 3);
+  CHECK(std::filesystem::file_size(place / "frames") == 21 * 64 * 64 * 3);
 }
 
 TEST_CASE("ffmpeg makes a video of the frames under any name, also of an odd number of pixels") {
@@ -439,24 +388,18 @@ TEST_CASE("ffmpeg makes a video of the frames under any name, also of an odd num
   const Workplace place;
   for (const char* name : {"-dash and blank.mp4", "http:colon.mp4", "v.mp4"}) {
     CAPTURE(name);
-    const CommandResult made = runCommand(
-        "cd " + quoted(place.path().string()) + " && " + (binaryDirectory() / "bin/lumivox").string() +
-        " render room.scene " + quoted(committedPipeline("direct_lighting")) +
-        " -q --resolution 33x21 --frames 0..9 --fps 12.5 --video=" + quoted(name));
-    INFO(made.errors);
-    REQUIRE(made.exitCode == 0);
+    ran(in(place.path()), "render room.scene", committedPipeline("direct_lighting"),
+        "-q --resolution 33x21 --frames 0..9 --fps 12.5", ("--video=" + std::string(name)));
     const CommandResult probed = runCommand(
         "ffprobe -v error -count_frames -show_entries stream=width,height,r_frame_rate,nb_read_frames "
         "-of csv=p=0 " +
-        quoted("file:" + place.file(name)));
+        std::string("'file:") + place.file(name) + "'");
     CHECK(contains(probed.output, "34,22,25/2,10"));
   }
   // The first frame is the image that render writes, but for what the encoder loses.
-  REQUIRE(runCommand(
-              "cd " + quoted(place.path().string()) + " && " + (binaryDirectory() / "bin/lumivox").string() +
-              " render room.scene " + quoted(committedPipeline("direct_lighting")) +
-              " -q --resolution 33x21 --frames 0..9 -o f#.png && ffmpeg -v error -i v.mp4 -frames:v 1 v.png")
+  place.rendered("direct_lighting", "--resolution 33x21 --frames 0..9 -o", place / "f#.png");
+  REQUIRE(runCommand("cd '" + place.path().string() + "' && ffmpeg -v error -i v.mp4 -frames:v 1 v.png")
               .exitCode == 0);
-  const double grey = meanGrey(readByteImage(place.path() / "f0.png"));
-  CHECK(meanGrey(readByteImage(place.path() / "v.png")) == Approx(grey).epsilon(0.12));
+  const double grey = meanGrey(readByteImage(place / "f0.png"));
+  CHECK(meanGrey(readByteImage(place / "v.png")) == Approx(grey).epsilon(0.12));
 }

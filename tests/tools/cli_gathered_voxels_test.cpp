@@ -38,13 +38,10 @@ TEST_CASE("a sweep over the density of points keeps recall, precision and holes,
   text.erase(text.find("sweep quality"));
   place.write("points.pipeline", text + "sweep imperfection {\n  density [0.25 1 4]\n}\n");
   const std::string store = "--store '" + place.file("results.sqlite") + "'";
-  const CommandResult made =
-      runCommand("lumivox -q sweep '" + place.scene() + "' --pipeline '" + place.file("points.pipeline") +
-                 "' --set resolution=16 --set rays=16 --resolution 12x8 --spp 4 --subpixels 1 --repeats 1 "
-                 "--seeds 1 --json " +
-                 store);
-  INFO(made.errors);
-  REQUIRE(made.exitCode == 0);
+  const CommandResult made = ran(
+      "-q sweep", place.scene(), "--pipeline", place.file("points.pipeline"),
+      "--set resolution=16 --set rays=16 --resolution 12x8 --spp 4 --subpixels 1 --repeats 1 --seeds 1 --json",
+      Raw{store});
   std::map<double, Json> byDensity;
   const Json output = Json::parse(made.output);
   for (const Json& run : output.at("runs")) {
@@ -65,8 +62,7 @@ TEST_CASE("a sweep over the density of points keeps recall, precision and holes,
     holes = voxels.at("axis_holes").get<double>();
   }
 
-  const CommandResult exported = runCommand("lumivox results export " + store + " --format csv");
-  REQUIRE(exported.exitCode == 0);
+  const CommandResult exported = ran("results export", Raw{store}, "--format csv");
   std::istringstream lines(exported.output);
   std::string line;
   std::getline(lines, line);
@@ -81,7 +77,7 @@ TEST_CASE("a sweep over the density of points keeps recall, precision and holes,
   CHECK(columnOf("oblique_holes") == column + 3);
   CHECK(exported.output.find(fmt::format(
             ",voxels.fragments,,{},", byDensity.at(0.25).at("recall").get<double>())) != std::string::npos);
-  const Json json = Json::parse(runCommand("lumivox results export " + store + " --format json").output);
+  const Json json = Json::parse(typed("results export", Raw{store}, "--format json").output);
   CHECK(json.dump().find("\"axis_holes\"") != std::string::npos);
 }
 
@@ -90,9 +86,8 @@ TEST_CASE(
   const Workplace place;
   const auto refusal = [&](const std::string& text) {
     place.write("mixed.pipeline", text);
-    const CommandResult result =
-        runCommand("lumivox -q render '" + place.scene() + "' '" + place.file("mixed.pipeline") +
-                   "' --resolution 8x8 -o '" + place.file("image.exr") + "'");
+    const CommandResult result = typed("-q render", place.scene(), place.file("mixed.pipeline"),
+                                       "--resolution 8x8 -o", place.file("image.exr"));
     INFO(result.output << result.errors);
     CHECK(result.exitCode != 0);
     CHECK_FALSE(place.has("image.exr"));

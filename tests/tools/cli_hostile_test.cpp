@@ -1,5 +1,5 @@
 // Numbers, names and texts that nobody means: refused with a sentence, before any work, and soon.
-#include <ctime>
+#include <chrono>
 
 #include "lumivox/base/image.h"
 #include "tools/cli_support.h"
@@ -9,23 +9,11 @@ using namespace lumivox::test;
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  return "'" + text + "'";
-}
-
-std::string renderRoom(const Workplace& place, const std::string& more) {
-  return "lumivox render -q " + quoted(place.scene()) + " " + quoted(committedPipeline("direct_lighting")) +
-         " " + more;
-}
-
-/// Command, and seconds by the clock until it was done.
-std::pair<CommandResult, double> timed(const std::string& command) {
-  timespec start{}, end{};
-  clock_gettime(CLOCK_MONOTONIC, &start);
-  CommandResult result = runCommand(command);
-  clock_gettime(CLOCK_MONOTONIC, &end);
-  return {std::move(result), static_cast<double>(end.tv_sec - start.tv_sec) +
-                                 1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec)};
+/// What check finds, and seconds by the clock until it was done.
+std::pair<CommandResult, double> timedCheck(const Workplace& place, const char* name) {
+  const auto start = std::chrono::steady_clock::now();
+  CommandResult result = typed("check", place / name);
+  return {std::move(result), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }
 constexpr double kSoon = 60.0;  // s, on a machine that does other things too
 
@@ -33,7 +21,6 @@ constexpr double kSoon = 60.0;  // s, on a machine that does other things too
 
 TEST_CASE("numbers of options that nothing could be computed with are refused, and nothing is written") {
   const Workplace place;
-  const std::string out = " -o " + quoted(place.file("x.png"));
   for (const char* option : {"--eye nan,0,0",
                              "--eye 0,0,inf",
                              "--eye 1e200,0,0",
@@ -69,19 +56,19 @@ TEST_CASE("numbers of options that nothing could be computed with are refused, a
                              "--seed 1e300"}) {
     CAPTURE(option);
     const std::string name = std::string(option).substr(std::string(option).rfind("--"));
-    checkRefused(runCommand(renderRoom(place, option + out)), name.substr(0, name.find(' ')));
+    checkRefused(place.render("direct_lighting", option, "-o", place / "x.png"),
+                 name.substr(0, name.find(' ')));
   }
+  const char* origin = "--eye 0,0,0 --target";
+  checkRefused(place.render("direct_lighting", origin, "0,0,0 -o", place / "x.png"), "eye", "target", "same");
+  checkRefused(place.render("direct_lighting", origin, "0,1,0 -o", place / "x.png"), "along", "'up'");
   CHECK_FALSE(place.has("x.png"));
-  checkRefused(runCommand(renderRoom(place, "--eye 0,0,0 --target 0,0,0" + out)),
-               "eye and target are the same point");
-  checkRefused(runCommand(renderRoom(place, "--eye 0,0,0 --target 0,1,0" + out)), "looks along 'up'");
-  CHECK_FALSE(place.has("x.png"));
-  checkRefused(runCommand("lumivox reference -q --occlusion-distance nan " + quoted(place.scene()) + out),
+  checkRefused(typed("reference -q --occlusion-distance nan", place.scene(), "-o", place / "x.png"),
                "--occlusion-distance");
-  checkRefused(runCommand("lumivox reproduce --scale nan"), "--scale");
-  checkRefused(runCommand("lumivox cache prune --unused-for nan"), "--unused-for");
-  checkRefused(runCommand("lumivox tune --error nan " + quoted(place.scene())), "--error");
-  checkRefused(runCommand("lumivox tune --frame-time 1e300s " + quoted(place.scene())), "--frame-time");
+  checkRefused(typed("reproduce --scale nan"), "--scale");
+  checkRefused(typed("cache prune --unused-for nan"), "--unused-for");
+  checkRefused(typed("tune --error nan", place.scene()), "--error");
+  checkRefused(typed("tune --frame-time 1e300s", place.scene()), "--frame-time");
 }
 
 TEST_CASE("check names the numbers of a scene that render would have made NaN or black of") {
@@ -93,10 +80,9 @@ TEST_CASE("check names the numbers of a scene that render would have made NaN or
     place.write("bad.scene", std::string("scene \"x\" {\n  camera main { eye 0 0 0.9  target 0 0 -1 }\n"
                                          "  mesh room { file \"room.obj\" }\n  ") +
                                  light + "\n}\n");
-    checkRefused(runCommand("lumivox check " + quoted(place.file("bad.scene"))), word);
+    checkRefused(typed("check", place / "bad.scene"), word);
     checkRefused(
-        runCommand("lumivox render " + quoted(place.file("bad.scene")) + " " +
-                   quoted(committedPipeline("direct_lighting")) + " -o " + quoted(place.file("x.png"))),
+        typed("render", place / "bad.scene", committedPipeline("direct_lighting"), "-o", place / "x.png"),
         word);
   }
   CHECK_FALSE(place.has("x.png"));
@@ -106,8 +92,8 @@ TEST_CASE(
     "texts of one endless line and of very many unknown names are checked soon, and the findings are counted") {
   const Workplace place;
   place.write("line.scene", std::string(std::size_t{4} << 20, '@'));
-  const auto [line, lineSeconds] = timed("lumivox check " + quoted(place.file("line.scene")));
-  checkRefused(line, "unexpected character '@'");
+  const auto [line, lineSeconds] = timedCheck(place, "line.scene");
+  checkRefused(line, "'@'");
   CHECK(lineSeconds < kSoon);
 
   constexpr int kNames = 25000;
@@ -119,157 +105,134 @@ TEST_CASE(
     pipeline += "  pass p" + std::to_string(i) + " unknown" + std::to_string(i) + ".x { }\n";
   }
   place.write("names.scene", scene + "}\n");
-  const auto [names, nameSeconds] = timed("lumivox check " + quoted(place.file("names.scene")));
-  checkRefused(names, "unknown material 'k0'");
-  CHECK(contains(names.errors, "and 24800 more findings; the first 200 are shown"));
+  const auto [names, nameSeconds] = timedCheck(place, "names.scene");
+  checkRefused(names, "material", "k0", 24800, 200);
   CHECK(nameSeconds < kSoon);
-  const auto json =
-      nlohmann::json::parse(runCommand("lumivox check --json " + quoted(place.file("names.scene"))).output);
+  const auto json = nlohmann::json::parse(typed("check --json", place.file("names.scene")).output);
   CHECK(json[0]["findings"].size() == 200);
   CHECK(json[0]["more_findings"] == 24800);
 
   place.write("names.pipeline", pipeline + "}\n");
-  const auto [passes, passSeconds] = timed("lumivox check " + quoted(place.file("names.pipeline")));
-  checkRefused(passes, "too many blocks or properties 'pass'; expected at most 1000 in a pipeline");
+  const auto [passes, passSeconds] = timedCheck(place, "names.pipeline");
+  checkRefused(passes, "pass", 1000);
   CHECK(passSeconds < kSoon);
 }
 
 TEST_CASE("an output that is an input, another output or a file of another kind is refused before the work") {
   const Workplace place;
-  const std::string store = place.file("store.sqlite");
-  const CommandResult stored = runCommand(
-      "lumivox sweep -q --resolution 8x8 --spp 2 --subpixels 1 --repeats 1 --seeds 1 --flicker-frames 0 "
-      "--pipeline " +
-      quoted(committedPipeline("direct_lighting")) + " --store " + quoted(store) + " " +
-      quoted(place.scene()));
-  INFO(stored.errors);
-  REQUIRE(stored.exitCode == 0);
+  const std::string direct = committedPipeline("direct_lighting"), taken = "read";
+  ran("sweep -q --resolution 8x8 --spp 2 --subpixels 1 --repeats 1 --seeds 1 --flicker-frames 0 --pipeline",
+      direct, "--store", place / "store.sqlite", place.scene());
   const std::string before = place.read("store.sqlite");
-  std::filesystem::create_symlink("store.sqlite", place.path() / "link.csv");
-  std::filesystem::create_hard_link(store, place.path() / "hard.csv");
-  const std::string exported = "lumivox results export --store " + quoted(store) + " -o ";
-  checkRefused(runCommand(exported + quoted(store)), "-o");
-  checkRefused(runCommand(exported + quoted(place.file("link.csv"))), "is read; expected another name");
-  checkRefused(runCommand(exported + quoted(place.file("hard.csv"))), "is read; expected another name");
-  checkRefused(runCommand(exported + quoted(place.file("x.json"))), "expected a name that ends in .csv");
-  checkRefused(runCommand(exported + quoted(place.file("x.csv")) + " --format json"), "ends in .json");
+  std::filesystem::create_symlink("store.sqlite", place / "link.csv");
+  std::filesystem::create_hard_link(place / "store.sqlite", place / "hard.csv");
+  const auto exported = [&](const auto&... output) {
+    return typed("results export --store", place / "store.sqlite", "-o", output...);
+  };
+  checkRefused(exported(place / "store.sqlite"), "-o");
+  checkRefused(exported(place / "link.csv"), "link.csv", taken);
+  checkRefused(exported(place / "hard.csv"), "hard.csv", taken);
+  checkRefused(exported(place / "x.json"), "x.json", ".csv");
+  checkRefused(exported(place / "x.csv", "--format json"), "x.csv", ".json");
   CHECK(place.read("store.sqlite") == before);
-  CHECK(runCommand(exported + quoted(place.file("runs.csv"))).exitCode == 0);
-  CHECK(runCommand(exported + quoted(place.file("runs"))).exitCode == 0);
-  CHECK(runCommand(exported + "/dev/stdout").exitCode == 0);
+  CHECK(exported(place / "runs.csv").exitCode == 0);
+  CHECK(exported(place / "runs").exitCode == 0);
+  CHECK(exported("/dev/stdout").exitCode == 0);
 
   // A store that is made only now is an input as well, and so is that in which points wait for their page.
-  const std::string room = " -q " + quoted(place.scene()) + " --pipeline " +
-                           quoted(committedPipeline("direct_lighting")) + " --store ";
+  const auto stored = [&](const char* command, const std::string& store, const std::string& output) {
+    return typed(command, "-q", place.scene(), "--pipeline", direct, "--store", place / store, "-o",
+                 place / output);
+  };
   for (const char* name : {"page.csv", "page.json"})
-    checkRefused(runCommand("lumivox report" + room + quoted(place.file(name)) + " -o " +
-                            quoted(place.file("page.html"))),
-                 "is read; expected another name");
-  checkRefused(runCommand("lumivox tune --frame-time 16ms" + room + quoted(place.file("own.pipeline")) +
-                          " -o " + quoted(place.file("own.pipeline"))),
-               "is read; expected another name");
-  const std::string waiting = place.file("page.unfinished.sqlite");
-  std::filesystem::copy_file(store, waiting);
-  checkRefused(
-      runCommand("lumivox report" + room + quoted(waiting) + " -o " + quoted(place.file("page.html"))),
-      "is read; expected another name");
-  CHECK(readFile(waiting) == before);
-  checkRefused(runCommand("lumivox report" + room + quoted(store) + " -o " +
-                          quoted(place.file(std::string(245, 'p') + ".html"))),
-               "too long");
-
-  const std::string report = "lumivox report -q " + quoted(place.scene()) + " -o ";
-  checkRefused(runCommand(report + quoted(place.file("page.png"))), "ends in .html");
-  checkRefused(runCommand(report + quoted(place.scene())), "ends in .html");
-  for (const auto& [files, why] : std::vector<std::pair<std::string, std::string>>{
-           {"-o out.exr --sheet out.png --frames 0..1 --video out.png", "--video 'out.png': expected a name"},
-           {"-o room.scene", "-o 'room.scene': expected a name that ends in .exr or .png"},
-           {"-o x.jpg", "-o 'x.jpg': expected a name that ends in .exr or .png"},
-           {"-o x.exr --sheet x.exr", "--sheet 'x.exr': expected a name that ends in .png"},
-           {"-o x.png --sheet x.png", "--sheet 'x.png': that is the file of -o too"},
-           {"-o x.png --sheet ./x.png", "--sheet './x.png': that is the file of -o too"}}) {
+    checkRefused(stored("report", name, "page.html"), name, taken);
+  checkRefused(stored("tune --frame-time 16ms", "own.pipeline", "own.pipeline"), "own.pipeline", taken);
+  std::filesystem::copy_file(place / "store.sqlite", place / "page.unfinished.sqlite");
+  checkRefused(stored("report", "page.unfinished.sqlite", "page.html"), "page.unfinished.sqlite", taken);
+  CHECK(place.read("page.unfinished.sqlite") == before);
+  checkRefused(stored("report", "store.sqlite", std::string(245, 'p') + ".html"), "too long");
+  for (const char* name : {"page.png", "room.scene"})
+    checkRefused(typed("report -q", place.scene(), "-o", place / name), name, ".html");
+  for (const auto& [files, facts] : std::vector<std::pair<const char*, Tells>>{
+           {"-o out.exr --sheet out.png --frames 0..1 --video out.png", Tells("--video", "out.png")},
+           {"-o room.scene", Tells("-o", "room.scene", ".exr", ".png")},
+           {"-o x.jpg", Tells("-o", "x.jpg", ".exr", ".png")},
+           {"-o x.exr --sheet x.exr", Tells("--sheet", "x.exr", ".png")},
+           {"-o x.png --sheet x.png", Tells("--sheet", "x.png", "-o")},
+           {"-o x.png --sheet ./x.png", Tells("--sheet", "./x.png", "-o")}}) {
     CAPTURE(files);
-    checkRefused(runCommand("PATH=" + quoted((binaryDirectory() / "bin").string()) + ":$PATH; cd " +
-                            quoted(place.path().string()) + " && " + renderRoom(place, files)),
-                 why);
+    const CommandResult result = typed(in(place.path()), "render -q", place.scene(), direct, files);
+    checkRefused(result);
+    CHECK_THAT(result.errors, facts);
   }
   // What is read by a text counts as well: a texture, an included text, under any name.
   place.write(
       "mapped.scene",
       "scene \"x\" {\n  camera main { eye 0 0 0.9  target 0 0 -1  resolution 8 8 }\n"
       "  material m { diffuse 0.5  texture \"map.png\" }\n  mesh room { file \"room.obj\"  material m }\n}\n");
-  REQUIRE(runCommand(renderRoom(place, "--resolution 8x8 -o " + quoted(place.file("map.png")))).exitCode ==
-          0);
-  std::filesystem::create_symlink("map.png", place.path() / "other.png");
+  place.rendered("direct_lighting", "--resolution 8x8 -o", place / "map.png");
+  std::filesystem::create_symlink("map.png", place / "other.png");
   const std::string map = place.read("map.png");
   // Also in the midst of a sequence.
-  std::filesystem::create_symlink("map.png", place.path() / "frame_0001.png");
-  checkRefused(runCommand("lumivox render -q " + quoted(place.file("mapped.scene")) + " " +
-                          quoted(committedPipeline("direct_lighting")) + " --frames 0..2 -o " +
-                          quoted(place.file("frame_####.png"))),
-               "frame_0001.png': that file was read for the same work");
+  std::filesystem::create_symlink("map.png", place / "frame_0001.png");
+  const auto mapped = [&](const char* frames, const char* name) {
+    return typed("render -q", place / "mapped.scene", direct, frames, "-o", place / name);
+  };
+  checkRefused(mapped("--frames 0..2", "frame_####.png"), "frame_0001.png", taken);
   CHECK_FALSE(place.has("frame_0000.png"));
-  for (const char* name : {"map.png", "other.png"})
-    checkRefused(runCommand("lumivox render -q " + quoted(place.file("mapped.scene")) + " " +
-                            quoted(committedPipeline("direct_lighting")) + " -o " + quoted(place.file(name))),
-                 "was read for the same work");
+  for (const char* name : {"map.png", "other.png"}) checkRefused(mapped("", name), name, taken);
   CHECK(place.read("map.png") == map);
   // And what tune and report choose by themselves: a pipeline beside the scene, a text without an ending.
-  std::filesystem::create_directories(place.path() / "scenes/pipelines");
-  const std::string direct = readFile(committedPipeline("direct_lighting")),
-                    small = " --resolution 8x8 --spp 2 --store " + quoted(store);
-  place.write("scenes/pipelines/beside.pipeline", direct);
+  std::filesystem::create_directories(place / "scenes/pipelines");
+  place.write("scenes/pipelines/beside.pipeline", readFile(direct));
   for (const char* name : {"room.obj", "room.mtl", "room.scene"})
-    std::filesystem::copy_file(place.path() / name, place.path() / "scenes" / name);
-  checkRefused(runCommand("lumivox tune -q --frame-time 16ms " + quoted(place.file("scenes/room.scene")) +
-                          small + " -o " + quoted(place.file("scenes/pipelines/beside.pipeline"))),
-               "was read for the same work");
-  CHECK(place.read("scenes/pipelines/beside.pipeline") == direct);
+    std::filesystem::copy_file(place / name, place / "scenes" / name);
+  const auto small = [&](const char* command, const std::string& scene, const auto&... output) {
+    return typed(command, "-q --resolution 8x8 --spp 2", place / scene, "--store", place / "store.sqlite",
+                 output...);
+  };
+  checkRefused(
+      small("tune --frame-time 16ms", "scenes/room.scene", "-o", place / "scenes/pipelines/beside.pipeline"),
+      "beside.pipeline", taken);
+  CHECK(place.read("scenes/pipelines/beside.pipeline") == readFile(direct));
   place.write("rest", "material grey { diffuse 0.5 }\n");
   place.write(
       "included.scene",
       std::string(kRoomScene).replace(std::string(kRoomScene).rfind('}'), 1, "  include \"rest\"\n}"));
   for (const char* command : {"tune --frame-time 16ms", "report"})
-    checkRefused(
-        runCommand(std::string("lumivox ") + command + " -q " + quoted(place.file("included.scene")) +
-                   " --pipeline " + quoted(committedPipeline("direct_lighting")) + small + " -o " +
-                   quoted(place.file("rest"))),
-        command[0] == 't' ? "was read for the same work" : "rest");
+    checkRefused(small(command, "included.scene", "--pipeline", direct, "-o", place / "rest"), "rest");
+  CHECK(place.read("rest") == "material grey { diffuse 0.5 }\n");
   CHECK_FALSE(place.has("page.png"));
   CHECK_FALSE(place.has("x.png"));
 }
 
 TEST_CASE("a battery whose cells cannot be written beside its page is refused before the first of them") {
   const Workplace place;
-  std::filesystem::create_directories(place.path() / "out/index.json");
-  checkRefused(runCommand("lumivox -q stress --quick --workers 1 --case camera_on_surface --pipeline " +
-                          quoted(committedPipeline("direct_lighting")) + " --store " +
-                          quoted(place.file("cells.sqlite")) + " -o " + quoted(place.file("out"))),
-               "index.json: cannot write: is a directory; expected a file");
+  std::filesystem::create_directories(place / "out/index.json");
+  checkRefused(
+      typed("-q stress --quick --workers 1 --case camera_on_surface --pipeline",
+            committedPipeline("direct_lighting"), "--store", place / "cells.sqlite", "-o", place / "out"),
+      "index.json", "directory", "file");
   CHECK_FALSE(place.has("cells.sqlite"));
 }
 
 TEST_CASE("an output with the longest name is written, a longer one refused before the work") {
   const Workplace place;
   const std::string name = std::string(251, 'n') + ".png";
-  REQUIRE(runCommand(renderRoom(place, "--resolution 8x8 -o " + quoted(place.file(name)))).exitCode == 0);
+  place.rendered("direct_lighting", "--resolution 8x8 -o", place / name);
   CHECK(place.has(name));
   // Before the texts are looked at, which are not there.
-  checkRefused(
-      runCommand("lumivox render -q absent.scene absent.pipeline -o " + quoted(place.file("n" + name))),
-      "too long");
+  checkRefused(typed("render -q absent.scene absent.pipeline -o", place / ("n" + name)), "too long");
 }
 
 TEST_CASE("the recorded command is one that a shell reads back, quotes and all") {
   const Workplace place;
   place.write("it's here.scene", kRoomScene);
-  const std::string command = "lumivox render -q \"" + place.file("it's here.scene") + "\" " +
-                              quoted(committedPipeline("direct_lighting")) + " --resolution 8x8 -o " +
-                              quoted(place.file("a.exr"));
-  REQUIRE(runCommand(command).exitCode == 0);
-  const std::string recorded = readExr(place.path() / "a.exr").attributes.at("lumivox.command");
+  ran("render -q", Raw{"\"" + place.file("it's here.scene") + "\""}, committedPipeline("direct_lighting"),
+      "--resolution 8x8 -o", place / "a.exr");
+  const std::string recorded = readExr(place / "a.exr").attributes.at("lumivox.command");
   CHECK(contains(recorded, "it'\\''s here.scene'"));
-  std::filesystem::remove(place.path() / "a.exr");
+  std::filesystem::remove(place / "a.exr");
   CHECK(runCommand(recorded).exitCode == 0);
   CHECK(place.has("a.exr"));
 }
@@ -279,24 +242,13 @@ TEST_CASE("a medium that no pass reads is said by render and by explain, and not
   place.write("fog.scene", std::string(kRoomScene)
                                .insert(std::string(kRoomScene).rfind('}'),
                                        "  medium fog { extinction 0.1 /m  albedo 0.5 }\n"));
-  const std::string scene = " " + quoted(place.file("fog.scene")) + " ", more = " --resolution 8x8 ";
-  const CommandResult clear =
-      runCommand("lumivox render" + scene + quoted(committedPipeline("voxel_cone_tracing")) + more +
-                 "--set resolution=16 -o " + quoted(place.file("a.png")));
-  INFO(clear.errors);
-  CHECK(clear.exitCode == 0);
-  CHECK(
-      contains(clear.errors, "leaves out medium 'fog': no pass reads media: the image is that of clear air"));
+  const auto made = [&](const char* command, const char* pipeline, const auto&... more) {
+    return ran(command, place / "fog.scene", committedPipeline(pipeline), "--resolution 8x8", more...);
+  };
+  const CommandResult clear = made("render", "voxel_cone_tracing", "--set resolution=16 -o", place / "a.png");
+  CHECK_THAT(clear.errors, Tells("leaves out", "medium", "fog", "clear air"));
   CHECK_FALSE(contains(clear.errors, "leaves out the"));
-  const CommandResult explained =
-      runCommand("lumivox explain --no-times" + scene + quoted(committedPipeline("voxel_cone_tracing")) +
-                 more + "--set resolution=16 --json");
-  REQUIRE(explained.exitCode == 0);
-  CHECK(contains(explained.output, "medium 'fog'"));
-  const CommandResult seen =
-      runCommand("lumivox render" + scene + quoted(committedPipeline("volumetric_smoke")) + more + "-o " +
-                 quoted(place.file("b.png")));
-  INFO(seen.errors);
-  CHECK(seen.exitCode == 0);
-  CHECK_FALSE(contains(seen.errors, "leaves out"));
+  CHECK_THAT(made("explain --no-times", "voxel_cone_tracing", "--set resolution=16 --json").output,
+             Tells("medium", "fog"));
+  CHECK_FALSE(contains(made("render", "volumetric_smoke", "-o", place / "b.png").errors, "leaves out"));
 }

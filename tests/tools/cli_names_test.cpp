@@ -9,11 +9,10 @@ using namespace lumivox;
 using namespace lumivox::test;
 
 TEST_CASE("a name that list prints stands for its text") {
-  CHECK(contains(runCommand("lumivox check cornell voxel_cone_tracing").output, "cornell.scene: good"));
-  const CommandResult byName = runCommand("lumivox shaders cornell direct_lighting"),
-                      byPath = runCommand("lumivox shaders '" +
-                                          (sourceDirectory() / "scenes/cornell.scene").string() + "' '" +
-                                          committedPipeline("direct_lighting") + "'");
+  CHECK(contains(typed("check cornell voxel_cone_tracing").output, "cornell.scene: good"));
+  const CommandResult byName = typed("shaders cornell direct_lighting"),
+                      byPath = typed("shaders", sourceDirectory() / "scenes/cornell.scene",
+                                     committedPipeline("direct_lighting"));
   INFO(byName.errors);
   CHECK(byName.exitCode == 0);
   CHECK_FALSE(byName.output.empty());
@@ -21,8 +20,8 @@ TEST_CASE("a name that list prints stands for its text") {
 }
 
 TEST_CASE("a name that is none is refused with the nearest, and one of the other kind with what it is") {
-  checkRefused(runCommand("lumivox shaders cornell direct_lightin"), "did you mean 'direct_lighting'");
-  checkRefused(runCommand("lumivox shaders direct_lighting cornell"), "'direct_lighting' is a pipeline");
+  checkRefused(typed("shaders cornell direct_lightin"), "did you mean 'direct_lighting'");
+  checkRefused(typed("shaders direct_lighting cornell"), "'direct_lighting' is a pipeline");
 }
 
 TEST_CASE("a technique that is not found is told with the folders that --techniques names") {
@@ -31,14 +30,13 @@ TEST_CASE("a technique that is not found is told with the folders that --techniq
                                       "pipeline \"mine\" {\n  pass a ambient.gather { }\n"
                                       "  output o a.diffuse\n}\n")
                                .string();
-  const CommandResult result =
-      runCommand("lumivox check '" + text + "' --techniques '" + work.path().string() + "'");
+  const CommandResult result = typed("check", text, "--techniques", work.path());
   checkRefused(result, "no libambient.so in " + work.path().string() + ", ");
   CHECK(contains(result.errors, "(--techniques FOLDER adds one)"));
 }
 
 TEST_CASE("the program's name alone is answered with the first three things to type, short") {
-  const CommandResult result = runCommand("lumivox");
+  const CommandResult result = typed("");
   checkRefused(result, "lumivox list scenes");
   CHECK(contains(result.errors, "lumivox render cornell voxel_cone_tracing -o out.png"));
   CHECK(contains(result.errors, "lumivox report cornell --budget 60s"));
@@ -64,13 +62,11 @@ TEST_CASE("describe fits the terminal, and names many passes with a port of the 
   // What goes on stands below the column that it belongs to.
   CHECK(std::regex_search(result.output, std::regex("\n  inner      half angle [^\n]*\n             [^ ]")));
   // A name of few ports is explained in full.
-  CHECK(contains(runCommand("lumivox describe cones").output,
-                 "parameter cones of voxel_cone_tracing.gather (an"));
+  CHECK(contains(typed("describe cones").output, "parameter cones of voxel_cone_tracing.gather (an"));
 }
 
 TEST_CASE("describe explains a word once where it means the same at several places, and names them") {
-  const std::string text =
-      std::regex_replace(runCommand("lumivox describe camera").output, std::regex("\\s+"), " ");
+  const std::string text = std::regex_replace(typed("describe camera").output, std::regex("\\s+"), " ");
   INFO(text);
   CHECK(contains(text,
                  "camera (in reproduction, reproduction > row, reproduction > curve, reproduction > curve > "
@@ -86,7 +82,7 @@ TEST_CASE("describe explains a word once where it means the same at several plac
 }
 
 TEST_CASE("describe finds a word by its singular or plural") {
-  const CommandResult one = runCommand("lumivox describe cone"), many = runCommand("lumivox describe cones");
+  const CommandResult one = typed("describe cone"), many = typed("describe cones");
   CHECK(one.exitCode == 0);
   CHECK(contains(one.output, "parameter cones of voxel_cone_tracing.gather"));
   CHECK(one.output == many.output);

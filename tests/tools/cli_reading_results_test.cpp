@@ -50,9 +50,7 @@ struct Files {
         "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
         "direct.radiance\n}\nsweep samples { samples [1 4] }\n");
     const std::string both = "'" + place.scene() + "' ";
-    REQUIRE(runCommand("lumivox render " + both + "'" + place.file("direct.pipeline") + "' -q -o '" +
-                       place.file("image.exr") + "'")
-                .exitCode == 0);
+    ran("render", Raw{both}, place.file("direct.pipeline"), "-q -o", place.file("image.exr"));
     const CommandResult report =
         runCommand("lumivox report " + both + "--pipeline '" + place.file("direct.pipeline") +
                    "' -q --spp 16 --subpixels 1 --repeats 2 --store '" + place.file("results.sqlite") +

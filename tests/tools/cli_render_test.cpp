@@ -7,27 +7,12 @@
 using namespace lumivox;
 using namespace lumivox::test;
 
-namespace {
-
-std::string quoted(const std::string& text) {
-  return "'" + text + "'";
-}
-
-/// "SCENE PIPELINE" with the little room.
-std::string roomWith(const Workplace& place, const std::string& pipeline) {
-  return quoted(place.scene()) + " " + quoted(committedPipeline(pipeline));
-}
-
-}  // namespace
-
 TEST_CASE(
     "render writes every output as a layer, their sum as the main layer, and where the image comes from") {
   const Workplace place;
-  const CommandResult result = runCommand("lumivox render " + roomWith(place, "voxel_cone_tracing") +
-                                          " --set resolution=16 --seed 3 -o " + quoted(place.file("a.exr")));
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
-  const LayeredImage image = readExr(place.path() / "a.exr");
+  const CommandResult result = ran("render", place.scene(), committedPipeline("voxel_cone_tracing"),
+                                   "--set resolution=16 --seed 3 -o", place.file("a.exr"));
+  const LayeredImage image = readExr(place / "a.exr");
   for (const char* layer : {"", "direct", "indirect_diffuse", "indirect_glossy"}) {
     INFO(layer);
     REQUIRE(image.layers.count(layer) == 1);
@@ -54,153 +39,133 @@ TEST_CASE(
 
 TEST_CASE("the same seed and device give the same bits twice") {
   const Workplace place;
-  for (const char* name : {"a.exr", "b.exr"})
-    REQUIRE(runCommand("lumivox render " + roomWith(place, "direct_lighting") + " -q -o " +
-                       quoted(place.file(name)))
-                .exitCode == 0);
-  const LayeredImage a = readExr(place.path() / "a.exr"), b = readExr(place.path() / "b.exr");
+  for (const char* name : {"a.exr", "b.exr"}) place.rendered("direct_lighting", "-o", place.file(name));
+  const LayeredImage a = readExr(place / "a.exr"), b = readExr(place / "b.exr");
   for (const auto& [name, image] : a.layers) CHECK(image.values() == b.layers.at(name).values());
 }
 
 TEST_CASE("render numbers the images of an animation, with a run of # or before the extension") {
   const Workplace place;
-  const std::string command =
-      "lumivox render " + roomWith(place, "direct_lighting") + " -q --resolution 8x8 --frames 9..11 -o ";
-  REQUIRE(runCommand(command + quoted(place.file("out.png"))).exitCode == 0);
-  REQUIRE(runCommand(command + quoted(place.file("f##.png"))).exitCode == 0);
+  for (const char* name : {"out.png", "f##.png"})
+    place.rendered("direct_lighting", "--resolution 8x8 --frames 9..11 -o", place / name);
   for (const char* name : {"out_0009.png", "out_0010.png", "out_0011.png", "f09.png", "f10.png", "f11.png"}) {
     INFO(name);
     CHECK(place.has(name));
   }
   CHECK_FALSE(place.has("out.png"));
-  const ByteImage image = readByteImage(place.path() / "f10.png");
-  CHECK(image.width == 8);
+  CHECK(readByteImage(place / "f10.png").width == 8);
 }
 
 TEST_CASE("render of one output alone has it as the main layer, and a wrong name names the nearest") {
   const Workplace place;
-  const std::string command =
-      "lumivox render " + roomWith(place, "direct_lighting") + " -q -o " + quoted(place.file("a.exr"));
-  REQUIRE(runCommand(command + " --output direct").exitCode == 0);
-  CHECK(readExr(place.path() / "a.exr").layers.size() == 1);
-  checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
-  checkRefused(
-      runCommand("lumivox render " + quoted(sourceDirectory() / "scenes/pipelines/direct_lighting.pipeline") +
-                 " " + quoted(sourceDirectory() / "scenes/cornell.scene") + " -o " +
-                 quoted(place.file("swapped.exr"))),
-      "expected them the other way round: render SCENE PIPELINE");
+  place.rendered("direct_lighting", "--output direct -o", place / "a.exr");
+  CHECK(readExr(place / "a.exr").layers.size() == 1);
+  checkRefused(place.render("direct_lighting", "--output dirext -o", place / "a.exr"), "did you mean",
+               "direct");
+  checkRefused(typed("render", committedPipeline("direct_lighting"),
+                     sourceDirectory() / "scenes/cornell.scene", "-o", place / "swapped.exr"),
+               "SCENE PIPELINE");
 }
 
 TEST_CASE("render accumulates frames at each time; without anything that does, the image stays to the bit") {
   const Workplace place;
-  const std::string command = "lumivox render " + roomWith(place, "direct_lighting") + " -q -o ";
-  REQUIRE(runCommand(command + quoted(place.file("alone.exr"))).exitCode == 0);
-  REQUIRE(runCommand(command + quoted(place.file("third.exr")) + " --accumulate 3").exitCode == 0);
-  const LayeredImage alone = readExr(place.path() / "alone.exr"), third = readExr(place.path() / "third.exr");
+  place.rendered("direct_lighting", "-o", place / "alone.exr");
+  place.rendered("direct_lighting", "--accumulate 3 -o", place / "third.exr");
+  const LayeredImage alone = readExr(place / "alone.exr"), third = readExr(place / "third.exr");
   for (const auto& [name, image] : alone.layers) CHECK(image.values() == third.layers.at(name).values());
   CHECK(alone.attributes.count("lumivox.accumulate") == 0);
   CHECK(third.attributes.at("lumivox.accumulate") == "3");
   for (const char* wrong : {"0", "-1", "2.5", "many"})
-    checkRefused(runCommand(command + quoted(place.file("x.exr")) + " --accumulate " + wrong),
+    checkRefused(place.render("direct_lighting", "-o", place / "x.exr", "--accumulate", wrong),
                  "--accumulate");
   CHECK_FALSE(place.has("x.exr"));
 }
 
 TEST_CASE("render --check-reads finds nothing in techniques that say what they read") {
   const Workplace place;
-  for (const char* pipeline : {"voxel_cone_tracing", "light_propagation_volumes"}) {
-    const CommandResult result =
-        runCommand("lumivox render " + roomWith(place, pipeline) +
-                   " -q --set resolution=16 --resolution 8x8 --frames 0..1 --check-reads -o " +
-                   quoted(place.file("f#.exr")));
-    INFO(result.errors);
-    CHECK(result.exitCode == 0);
-    CHECK(result.errors.empty());
-  }
+  for (const char* pipeline : {"voxel_cone_tracing", "light_propagation_volumes"})
+    CHECK(place
+              .rendered(pipeline, "--set resolution=16 --resolution 8x8 --frames 0..1 --check-reads -o",
+                        place / "f#.exr")
+              .errors.empty());
 }
 
 TEST_CASE("the reference has layers of numbers of bounces when they are asked for") {
   const Workplace place;
-  const std::string command = "lumivox reference " + quoted(place.scene()) +
-                              " -q --no-cache --resolution 8x8 --spp 2 --bounces 4 -o " +
-                              quoted(place.file("t.exr"));
-  REQUIRE(runCommand(command + " --bounce-layers 1,3").exitCode == 0);
-  const LayeredImage image = readExr(place.path() / "t.exr");
+  const auto reference = [&](const char* layers) {
+    return typed("reference", place.scene(),
+                 "-q --no-cache --resolution 8x8 --spp 2 --bounces 4 --bounce-layers", layers, "-o",
+                 place / "t.exr");
+  };
+  REQUIRE(reference("1,3").exitCode == 0);
+  const LayeredImage image = readExr(place / "t.exr");
   for (const char* layer : {"bounces_1", "bounces_3_diffuse", "bounces_3_glossy.variance"})
     CHECK(image.layers.count(layer) == 1);
   CHECK(image.layers.count("bounces_2") == 0);
-  checkRefused(runCommand(command + " --bounce-layers 5"), "a number of bounces with layers of its own is 5");
-  checkRefused(runCommand(command + " --bounce-layers one"), "--bounce-layers");
+  checkRefused(reference("5"), "bounces", 5);
+  checkRefused(reference("one"), "--bounce-layers");
 }
 
 TEST_CASE("a frame that cannot be written ends the render with its name, and those before it are whole") {
   const Workplace place;
-  std::filesystem::create_directories(place.path() / "f_1.png" / "in the way");
-  const CommandResult result =
-      runCommand("lumivox render " + roomWith(place, "direct_lighting") +
-                 " -q --resolution 8x8 --frames 0..3 -o " + quoted(place.file("f_#.png")));
+  std::filesystem::create_directories(place / "f_1.png" / "in the way");
+  const CommandResult result = typed("render", place.scene(), committedPipeline("direct_lighting"),
+                                     "-q --resolution 8x8 --frames 0..3 -o", place.file("f_#.png"));
   CHECK(result.exitCode == 2);
   CHECK_THAT(result.errors, Catch::Contains("f_1.png") && Catch::Contains("cannot write"));
-  CHECK(readByteImage(place.path() / "f_0.png").width == 8);
-  CHECK_FALSE(std::filesystem::exists(place.path() / "f_3.png"));
+  CHECK(readByteImage(place / "f_0.png").width == 8);
+  CHECK_FALSE(std::filesystem::exists(place / "f_3.png"));
   for (const auto& entry : std::filesystem::directory_iterator(place.path()))
     CHECK(entry.path().extension() != ".new");
 }
 
 TEST_CASE("an image is written to the file that a symbolic link names") {
   const Workplace place;
-  std::filesystem::create_symlink("there.png", place.path() / "link.png");
-  const CommandResult result = runCommand("lumivox render " + roomWith(place, "direct_lighting") +
-                                          " -q --resolution 8x8 -o " + quoted(place.file("link.png")));
+  std::filesystem::create_symlink("there.png", place / "link.png");
+  const CommandResult result = typed("render", place.scene(), committedPipeline("direct_lighting"),
+                                     "-q --resolution 8x8 -o", place.file("link.png"));
   INFO(result.errors);
   CHECK(result.exitCode == 0);
-  CHECK(std::filesystem::is_symlink(place.path() / "link.png"));
-  CHECK(readByteImage(place.path() / "there.png").width == 8);
+  CHECK(std::filesystem::is_symlink(place / "link.png"));
+  CHECK(readByteImage(place / "there.png").width == 8);
 }
 
 TEST_CASE("the cache of references is listed and pruned") {
   const Workplace place;
-  const std::string cache = "LUMIVOX_CACHE=" + quoted(place.file("cache")) + " ";
-  const auto run = [&](const std::string& arguments) {
-    return runCommand(cache + quoted((binaryDirectory() / "bin/lumivox").string()) + " " + arguments);
-  };
-  const std::string reference = "reference " + quoted(place.scene()) + " -q --resolution 8x8 --spp 2 -o " +
-                                quoted(place.file("t.exr")) + " --seed ";
-  REQUIRE(run(reference + "1").exitCode == 0);
-  REQUIRE(run(reference + "2").exitCode == 0);
+  for (const int seed : {1, 2})
+    ran("reference", place.scene(), "-q --resolution 8x8 --spp 2 -o", place / "t.exr", "--seed", seed);
   // And the view that both are exposed by.
-  const CommandResult list = run("cache list");
-  INFO(list.output << list.errors);
-  CHECK(list.exitCode == 0);
-  CHECK_THAT(list.output, Catch::Contains("3 references") && Catch::Contains("8 8") &&
-                              Catch::Contains("of at most 4.0 GiB"));
-  CHECK_THAT(run("cache list --json").output, Catch::Contains("\"limit_bytes\": 4294967296"));
-  CHECK_THAT(run("cache prune --dry-run --all").output, Catch::Contains("would remove 3 references"));
-  CHECK_THAT(run("cache prune --limit 1GiB").output, Catch::Contains("removed 0 references"));
-  CHECK_THAT(run("cache prune --limit plenty").errors, Catch::Contains("plenty"));
-  CHECK_THAT(run("cache prune --all").output, Catch::Contains("removed 3 references"));
-  CHECK_THAT(run("cache list").output, Catch::Contains("0 references"));
+  CHECK_THAT(ran("cache list").output, Tells(3, "references") && Tells("4.0 GiB") && Tells("8 8"));
+  CHECK(answered("cache list --json").at("limit_bytes") == 4294967296);
+  CHECK_THAT(typed("cache prune --dry-run --all").output, Tells("would remove", 3));
+  CHECK_THAT(typed("cache prune --limit 1GiB").output, Tells("removed", 0));
+  CHECK_THAT(typed("cache prune --limit plenty").errors, Tells("plenty"));
+  CHECK_THAT(typed("cache prune --all").output, Tells("removed", 3));
+  CHECK_THAT(typed("cache list").output, Tells(0, "references"));
 }
 
 TEST_CASE(
     "bad options are told before any work: parameter, range, resolution, frames, kind of image, place") {
   const Workplace place;
   place.write("old.exr", "an earlier result");
-  const std::string command =
-      "lumivox render " + roomWith(place, "voxel_cone_tracing") + " -o " + quoted(place.file("old.exr"));
-  checkRefused(runCommand(command + " --set resolutoin=64"), "did you mean 'resolution'");
-  checkRefused(runCommand(command + " --set resolution=0"), "resolution");
-  checkRefused(runCommand(command + " --set resolution=many"), "resolution");
-  checkRefused(runCommand(command + " --set resolution"), "resolution");
-  checkRefused(runCommand(command + " --resolution 0x5"), "--resolution");
-  checkRefused(runCommand(command + " --resolution 99999x99999"), "--resolution");
-  checkRefused(runCommand(command + " --frames 5..2"), "--frames");
-  checkRefused(runCommand(command + " --camera mane"), "main");
+  for (const auto& [option, facts] : std::vector<std::pair<const char*, Tells>>{
+           {"--set resolutoin=64", Tells("did you mean", "resolution")},
+           {"--set resolution=0", Tells("resolution", 0)},
+           {"--set resolution=many", Tells("resolution", "many")},
+           {"--set resolution", Tells("resolution")},
+           {"--resolution 0x5", Tells("--resolution")},
+           {"--resolution 99999x99999", Tells("--resolution")},
+           {"--frames 5..2", Tells("--frames")},
+           {"--camera mane", Tells("mane", "main")}}) {
+    CAPTURE(option);
+    const CommandResult result = place.render("voxel_cone_tracing", option, "-o", place / "old.exr");
+    checkRefused(result);
+    CHECK_THAT(result.errors, facts);
+  }
   CHECK(place.read("old.exr") == "an earlier result");
-  const std::string elsewhere = "lumivox render " + roomWith(place, "voxel_cone_tracing") + " -o ";
-  checkRefused(runCommand(elsewhere + quoted(place.file("a.jpg"))), "a.jpg");
-  checkRefused(runCommand(elsewhere + quoted(place.file("old.exr/a.exr"))), "old.exr");
-  checkRefused(runCommand(elsewhere + quoted(place.path().string() + "/cache.exr/")), "cache.exr");
+  checkRefused(place.render("voxel_cone_tracing", "-o", place / "a.jpg"), "a.jpg");
+  checkRefused(place.render("voxel_cone_tracing", "-o", place / "old.exr/a.exr"), "old.exr");
+  checkRefused(place.render("voxel_cone_tracing", "-o", place.file("cache.exr/")), "cache.exr");
 }
 
 TEST_CASE("every kind of bad input file gives one clear error and leaves the earlier image alone") {
@@ -231,8 +196,7 @@ TEST_CASE("every kind of bad input file gives one clear error and leaves the ear
   for (const auto& bad : cases) {
     INFO(bad.scene);
     checkRefused(
-        runCommand("lumivox render -q " + quoted(bad.scene) + " " +
-                   quoted(committedPipeline("direct_lighting")) + " -o " + quoted(place.file("old.exr"))),
+        typed("render -q", bad.scene, committedPipeline("direct_lighting"), "-o", place.file("old.exr")),
         bad.named);
   }
   place.write("cut.pipeline", "pipeline \"Cut\" {\n  pass gbuffer direct_lighting.gbuffer {\n");
@@ -240,8 +204,7 @@ TEST_CASE("every kind of bad input file gives one clear error and leaves the ear
               "pipeline \"Unknown\" {\n  pass a astrology.horoscope { }\n  output direct a.future\n}\n");
   for (const char* pipeline : {"cut.pipeline", "unknown.pipeline", "nowhere.pipeline"}) {
     INFO(pipeline);
-    checkRefused(runCommand("lumivox render -q " + quoted(place.scene()) + " " +
-                            quoted(place.file(pipeline)) + " -o " + quoted(place.file("old.exr"))),
+    checkRefused(typed("render -q", place.scene(), place.file(pipeline), "-o", place.file("old.exr")),
                  pipeline);
   }
   CHECK(place.read("old.exr") == "an earlier result");
@@ -259,18 +222,20 @@ TEST_CASE("a broken technique library or shader pack is named with its path and 
       "pipeline \"Own\" {\n  pass gbuffer my_paper.gbuffer { }\n  pass shadow my_paper.shadow_map { }\n"
       "  pass direct my_paper.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
       "direct.radiance\n}\n");
-  const std::string command = "lumivox render -q " + quoted(place.scene()) + " " +
-                              quoted(place.file("own.pipeline")) + " --techniques " +
-                              quoted(place.file("plugins")) + " -o " + quoted(place.file("a.exr"));
+  const auto refused = [&](const char* named) {
+    checkRefused(typed("render -q", place.scene(), place / "own.pipeline", "--techniques", place / "plugins",
+                       "-o", place / "a.exr"),
+                 named);
+  };
   for (const std::string& bytes :
        {std::string(), pack.substr(0, pack.size() / 2), std::string("no pack at all"), pack}) {
     place.write("plugins/my_paper.shaderpack", bytes);  // the last one is whole, but another technique's
-    checkRefused(runCommand(command), "my_paper.shaderpack");
+    refused("my_paper.shaderpack");
   }
-  place.write("plugins/libmy_paper.so", library.substr(0, 1000));
-  checkRefused(runCommand(command), "libmy_paper.so");
-  place.write("plugins/libmy_paper.so", "");
-  checkRefused(runCommand(command), "libmy_paper.so");
+  for (const std::string& bytes : {library.substr(0, 1000), std::string()}) {
+    place.write("plugins/libmy_paper.so", bytes);
+    refused("libmy_paper.so");
+  }
   CHECK_FALSE(place.has("a.exr"));
 }
 
@@ -291,8 +256,7 @@ TEST_CASE("a grid that cannot fit in memory is refused with its size") {
                   lights + "}\n");
   // 64 point lights, 6 faces of 8192 x 8192 texels of 4 bytes each: 96 GiB.
   const CommandResult result =
-      runCommand("lumivox render -q " + quoted(place.file("many.scene")) + " " +
-                 quoted(place.file("huge.pipeline")) + " -o " + quoted(place.file("a.exr")));
+      typed("render -q", place.file("many.scene"), place.file("huge.pipeline"), "-o", place.file("a.exr"));
   INFO(result.errors);
   CHECK(result.exitCode == 2);
   CHECK(contains(result.errors, "iB"));
@@ -302,102 +266,90 @@ TEST_CASE("a grid that cannot fit in memory is refused with its size") {
 TEST_CASE("strict refuses a model with a bad triangle that is otherwise dropped with a warning") {
   const Workplace place;
   place.write("room.obj", std::string(kRoomObj) + "v nan 0 0\nf 1 2 9\nf 1 1 2\n");
-  const std::string command = "lumivox render " + roomWith(place, "direct_lighting") +
-                              " --resolution 8x8 -o " + quoted(place.file("a.exr"));
-  const CommandResult strict = runCommand(command + " --strict");
-  checkRefused(strict, "room.obj");
+  const auto render = [&](const char* strict) {
+    return typed("render", place.scene(), committedPipeline("direct_lighting"), "--resolution 8x8", strict,
+                 "-o", place / "a.exr");
+  };
+  checkRefused(render("--strict"), "room.obj");
   CHECK_FALSE(place.has("a.exr"));
-  const CommandResult lenient = runCommand(command);
+  const CommandResult lenient = render("");
   CHECK(lenient.exitCode == 0);
-  CHECK(contains(lenient.errors, "room.obj"));
+  CHECK_THAT(lenient.errors, Tells("room.obj"));
 }
 
 TEST_CASE("reference writes the reference with its variances, and compare judges an image by it") {
   const Workplace place;
   const CommandResult result =
-      runCommand("lumivox reference " + quoted(place.scene()) + " -q --spp 16 --bounces 4 -o " +
-                 quoted(place.file("reference.exr")));
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
-  const LayeredImage reference = readExr(place.path() / "reference.exr");
+      ran("reference", place.scene(), "-q --spp 16 --bounces 4 -o", place.file("reference.exr"));
+  const LayeredImage reference = readExr(place / "reference.exr");
   for (const char* layer :
        {"", "direct", "one_bounce_diffuse", "indirect_diffuse", "full", "direct.variance", "full.variance"}) {
     INFO(layer);
     CHECK(reference.layers.count(layer) == 1);
   }
   CHECK(reference.layers.at("").values() == reference.layers.at("full").values());
-  REQUIRE(runCommand("lumivox render -q " + roomWith(place, "direct_lighting") + " -o " +
-                     quoted(place.file("a.exr")))
-              .exitCode == 0);
-  const CommandResult compared = runCommand("lumivox compare '" + place.file("a.exr") + "' '" +
-                                            place.file("reference.exr") + "' --layer direct --json");
+  ran("render -q", place.scene(), committedPipeline("direct_lighting"), "-o", place.file("a.exr"));
+  const CommandResult compared =
+      typed("compare", place.file("a.exr"), place.file("reference.exr"), "--layer direct --json");
   INFO(compared.errors);
   const auto layer = nlohmann::json::parse(compared.output).at("layers").at(0);
   // A point light on Lambert surfaces: direct lighting is exact but for the image's edges and the shadow
   // map.
   CHECK(layer["mean_ratio"]["value"].get<double>() == Approx(1.0).epsilon(0.1));
-  CHECK(runCommand("lumivox reference " + quoted(place.scene()) + " --spp 0 -o a.exr").exitCode == 2);
+  CHECK(typed("reference", place.scene(), "--spp 0 -o a.exr").exitCode == 2);
 }
 
 TEST_CASE("explain says what was left out, what it saved, and that the image is the same") {
   const Workplace place;
-  const CommandResult result = runCommand("lumivox explain " + roomWith(place, "voxel_cone_tracing") +
-                                          " -q --set resolution=16 --repeats 1 --json");
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
-  const auto json = nlohmann::json::parse(result.output);
+  const auto json = answered("explain", place.scene(), committedPipeline("voxel_cone_tracing"),
+                             "-q --set resolution=16 --repeats 1 --json");
   CHECK(json.at("same_image").get<bool>());
-  CHECK(json.at("frame_ms").at("median").get<double>() > 0.0);
-  CHECK(json.at("frame_ms_keep_everything").at("median").get<double>() > 0.0);
+  for (const char* frame : {"frame_ms", "frame_ms_keep_everything"})
+    CHECK(json.at(frame).at("median").get<double>() > 0.0);
   bool glossy = false;  // the room has nothing glossy
   for (const auto& one : json.at("left_out"))
     glossy = glossy || contains(one.at("why").get<std::string>(), "glossy");
   CHECK(glossy);
-  CHECK(
-      contains(runCommand("lumivox explain " + roomWith(place, "direct_lighting") + " -q --repeats 1").output,
-               "passes kept"));
+  CHECK_THAT(ran("explain", place.scene(), committedPipeline("direct_lighting"), "-q --repeats 1").output,
+             Tells("passes kept"));
 }
 
 TEST_CASE(
     "shaders lists the variants that are possible, compiled and needed, and prints any of them as GLSL") {
   const Workplace place;
-  const CommandResult result = runCommand("lumivox shaders -q " + roomWith(place, "voxel_cone_tracing") +
-                                          " --set resolution=16 --json");
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
-  const auto json = nlohmann::json::parse(result.output);
+  const auto json = answered("shaders -q", place.scene(), committedPipeline("voxel_cone_tracing"),
+                             "--set resolution=16 --json");
   REQUIRE_FALSE(json.at("programs").empty());
   for (const auto& program : json.at("programs")) {
     CHECK(program.at("possible").get<std::size_t>() >= program.at("compiled").get<std::size_t>());
     CHECK(program.at("compiled").get<std::size_t>() >= program.at("needed").size());
   }
-  const CommandResult glsl = runCommand("lumivox shaders --print voxel_cone_tracing/gather");
+  const CommandResult glsl = typed("shaders --print voxel_cone_tracing/gather");
   INFO(glsl.errors);
   CHECK(glsl.exitCode == 0);
   CHECK(contains(glsl.output, "#version 450"));
   CHECK(contains(glsl.output, "void main()"));
-  checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gahter"), "gather");
-  checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
-  checkRefused(runCommand("lumivox shaders"), "SCENE");
+  checkRefused(typed("shaders --print voxel_cone_tracing/gahter"), "gather");
+  checkRefused(typed("shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
+  checkRefused(typed("shaders"), "SCENE");
 }
 
 TEST_CASE(
     "what exceeds the memory that a run may take is refused with pass, resource, sum and limit, each once") {
   const Workplace place;
-  const std::string command = "lumivox render " + roomWith(place, "voxel_cone_tracing") +
-                              " -q --set resolution=64 -o " + quoted(place.file("a.exr")) + " --memory ";
+  const auto within = [&](const char* memory) {
+    return place.render("voxel_cone_tracing", "--set resolution=64 -o", place / "a.exr", "--memory", memory);
+  };
   // Each resource of the grid alone is smaller.
-  const CommandResult result = runCommand(command + "7MiB");
-  INFO(result.errors);
-  checkRefused(result, "of the limit of 7.0 MiB are left beside the ");
-  CHECK(contains(result.errors, "of all other textures and buffers"));
+  const CommandResult result = within("7MiB");
+  checkRefused(result, "7.0 MiB", "other textures and buffers");
   CHECK(std::regex_search(result.errors,
                           std::regex("pass \\w+: (texture|buffer) '\\w+: [^']+' \\(.*\\) needs ")));
   const std::size_t pass = result.errors.find("pass ");
   CHECK(result.errors.find("pass ", pass + 1) == std::string::npos);
-  CHECK_FALSE(std::filesystem::exists(place.path() / "a.exr"));
-  CHECK(runCommand(command + "1GiB").exitCode == 0);
-  checkRefused(runCommand(command + "lots"), "--memory");
+  CHECK_FALSE(place.has("a.exr"));
+  CHECK(within("1GiB").exitCode == 0);
+  checkRefused(within("lots"), "--memory");
 }
 
 TEST_CASE("what the driver refuses in a pass names the pass once") {
@@ -408,9 +360,9 @@ TEST_CASE("what the driver refuses in a pass names the pass once") {
               "  pass shadow direct_lighting.shadow_map { area_size 4096  area_samples 16 }\n"
               "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n"
               "  output direct direct.radiance\n}\n");
-  const CommandResult result = runCommand(
-      "lumivox --device software render " + quoted((sourceDirectory() / "scenes/cornell.scene").string()) +
-      " " + quoted(place.file("big.pipeline")) + " -q --resolution 16x16 -o " + quoted(place.file("a.exr")));
+  const CommandResult result =
+      typed("--device software render", sourceDirectory() / "scenes/cornell.scene",
+            place.file("big.pipeline"), "-q --resolution 16x16 -o", place.file("a.exr"));
   INFO(result.errors);
   checkRefused(result, "pass shadow: ");
   CHECK(contains(result.errors, "'shadow: shadow depth'"));

@@ -62,8 +62,8 @@ constexpr const char* kQuickPipeline =
 CommandResult makeReport(const Workplace& place, const std::string& more = {},
                          const std::string& page = "out/page.html") {
   place.write("quick.pipeline", kQuickPipeline);
-  return runCommand("lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
-                    "' -q --spp 16 --repeats 2 -o '" + place.file(page) + "' " + more);
+  return typed("report", place.scene(), "--pipeline", place.file("quick.pipeline"),
+               "-q --spp 16 --repeats 2 -o", place.file(page), Raw{more});
 }
 
 }  // namespace
@@ -125,10 +125,8 @@ TEST_CASE("a report for a look takes one frame, one seed and four positions, say
   place.write("quick.pipeline", kQuickPipeline);
   const auto made = [&](const std::string& more) {
     const CommandResult result =
-        runCommand("lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
-                   "' -q --spp 16 --no-sweep --quick -o '" + place.file("out/page.html") + "' " + more);
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+        ran("report", place.scene(), "--pipeline", place.file("quick.pipeline"),
+            "-q --spp 16 --no-sweep --quick -o", place.file("out/page.html"), Raw{more});
     return nlohmann::json::parse(place.read("out/page.json"));
   };
   const nlohmann::json look = made("");
@@ -170,8 +168,7 @@ TEST_CASE("a report shows and judges all images of a scene at one exposure, and 
   CHECK(automatic.at("reference").at("exposure_from") == "log-average of the full reference");
   const std::string usual = images();
   // What `reference` says of the same image.
-  REQUIRE(runCommand("lumivox reference '" + place.scene() + "' -q --spp 16 -o '" + place.file("t.exr") + "'")
-              .exitCode == 0);
+  ran("reference", place.scene(), "-q --spp 16 -o", place.file("t.exr"));
   CHECK(std::stod(readExrAttributes(place.path() / "t.exr").at("lumivox.exposure_ev")) == exposure);
 
   const auto given = made("--exposure -1.5 --tone srgb");
@@ -193,9 +190,7 @@ TEST_CASE("a report and the store that it adds to give the same CSV, with a colu
   REQUIRE(printed.exitCode == 0);
   const std::string report = place.read("out/page.csv");
   CHECK(printed.output == report);
-  const CommandResult exported =
-      runCommand("lumivox results export --store '" + place.file("results.sqlite") + "'");
-  REQUIRE(exported.exitCode == 0);
+  const CommandResult exported = ran("results export --store", place.file("results.sqlite"));
   CHECK(report.substr(0, report.find('\n')) == exported.output.substr(0, exported.output.find('\n')));
   auto rows = parseCsv(report), stored = parseCsv(exported.output);
   REQUIRE(rows.size() == stored.size());
@@ -242,12 +237,11 @@ TEST_CASE("a setting pins its axis of the sweep, and one that no pipeline knows 
 TEST_CASE("a report that cannot be made says so before the work and leaves the earlier page alone") {
   const Workplace place;
   place.write("out/page.html", "an earlier page");
-  checkRefused(runCommand("lumivox report '" + place.file("nowhere.scene") + "' -o '" +
-                          place.file("out/page.html") + "'"),
+  checkRefused(typed("report", place.file("nowhere.scene"), "-o", place.file("out/page.html")),
                "nowhere.scene");
   place.write("wrong.pipeline", "pipeline \"Wrong\" {\n  output direct nothing.radiance\n}\n");
-  checkRefused(runCommand("lumivox report '" + place.scene() + "' --pipeline '" +
-                          place.file("wrong.pipeline") + "' -o '" + place.file("out/page.html") + "'"),
+  checkRefused(typed("report", place.scene(), "--pipeline", place.file("wrong.pipeline"), "-o",
+                     place.file("out/page.html")),
                "wrong.pipeline");
   CHECK(place.read("out/page.html") == "an earlier page");
   std::filesystem::create_directories(place.path() / "cache");
@@ -255,9 +249,7 @@ TEST_CASE("a report that cannot be made says so before the work and leaves the e
                                       "cache/index.html");  // a folder in the place of the page
   checkRefused(makeReport(place, "", "cache"), place.file("cache"));
   checkRefused(makeReport(place, "", "room.obj/page.html"), "room.obj");
-  checkRefused(
-      runCommand("LUMIVOX_CHART_JS=/nowhere/chart.js '" + (binaryDirectory() / "bin/lumivox").string() +
-                 "' report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") + "' -o '" +
-                 place.file("page.html") + "'"),
-      "libjs-chart.js");
+  checkRefused(typed(Before{"LUMIVOX_CHART_JS=/nowhere/chart.js"}, "report", place.scene(), "--pipeline",
+                     place / "quick.pipeline", "-o", place / "page.html"),
+               "libjs-chart.js");
 }

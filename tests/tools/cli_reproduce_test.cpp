@@ -29,73 +29,62 @@ const Json& rowNamed(const Json& table, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("check tells everything that is wrong in a published table, each at its place") {
-  const CommandResult shapes = runCommand("lumivox check " + data("wrong.reproduction"));
-  checkRefused(shapes, "wrong.reproduction:1:1: block 'reproduction \"wrong\"' lacks the property 'paper'");
-  for (const char* finding : {"wrong.reproduction:6:18: 2 of property 'software_scale' is out of range",
-                              "wrong.reproduction:7:23: 0 of property 'published' is out of range",
-                              "wrong.reproduction:7:35: unknown value 'seconds' of property 'measures'",
-                              "wrong.reproduction:8:3: block 'row \"b\"' lacks the property 'published'",
-                              "wrong.reproduction:9:3: unknown property 'colour'"}) {
-    INFO(finding << "\n" << shapes.errors);
-    CHECK(contains(shapes.errors, finding));
-  }
-  const CommandResult references = runCommand("lumivox check " + data("wrong_references.reproduction"));
-  checkRefused(references, "wrong_references.reproduction:4:9: there is no file");
-  for (const char* finding :
-       {"wrong_references.reproduction:6:11: no pipeline here has a parameter 'resolution'",
-        "wrong_references.reproduction:7:9: pipeline \"Direct lighting\" has no parameter 'shadow_sise'",
-        "did you mean 'shadow_size'",
-        "wrong_references.reproduction:7:24: this value does not fit the parameter 'area_samples'",
-        "wrong_references.reproduction:8:34: pipeline \"Direct lighting\" has no pass 'gbufer'",
-        "did you mean 'gbuffer'", "wrong_references.reproduction:9:3: row 'b' does not say whose fragments",
-        "wrong_references.reproduction:10:33: this is not an output of a pass",
-        "wrong_references.reproduction:11:35: there is no file",
-        "wrong_references.reproduction:12:55: pipeline \"Direct lighting\" has no pass 'gbufer'"}) {
-    INFO(finding << "\n" << references.errors);
-    CHECK(contains(references.errors, finding));
-  }
-}
-
-TEST_CASE("check tells everything that is wrong in a published figure, each at its place") {
-  const CommandResult shapes = runCommand("lumivox check " + data("wrong_shapes.reproduction"));
-  checkRefused(shapes, "wrong_shapes.reproduction:4:11: 0 of property 'columns' is out of range");
-  for (const char* finding :
-       {"wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks the property 'over'",
-        "wrong_shapes.reproduction:5:22: unknown value 'sideways' of property 'growth'",
-        "wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks a block 'point'",
-        "wrong_shapes.reproduction:8:26: 9 of property 'subdivisions' is out of range",
-        "wrong_shapes.reproduction:10:21: unknown value 'everything' of property 'reference'",
-        "wrong_shapes.reproduction:10:3: block 'panel' lacks a name",
-        "wrong_shapes.reproduction:11:15: unknown property 'published'",
-        "wrong_shapes.reproduction:13:3: block 'row' named 'd' is given twice"}) {
-    INFO(finding << "\n" << shapes.errors);
-    CHECK(contains(shapes.errors, finding));
-  }
-  const CommandResult references = runCommand("lumivox check " + data("wrong_figure.reproduction"));
-  checkRefused(references, "wrong_figure.reproduction:8:31: there is no row 'aa'");
-  for (const char* finding :
-       {"did you mean 'a'", "wrong_figure.reproduction:9:31: row 'c' cannot be divided by 'c'",
-        "wrong_figure.reproduction:10:31: row 'd' cannot be divided by 'a'",
-        "wrong_figure.reproduction:12:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
-        "did you mean 'resolution'", "wrong_figure.reproduction:17:10: the parameter 'pixels' is a word",
-        "wrong_figure.reproduction:22:5: this point measures something other than its curve",
-        "wrong_figure.reproduction:24:22: this is not an output of a pass",
-        "wrong_figure.reproduction:26:11: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
-        "wrong_figure.reproduction:28:37: there is no file",
-        "wrong_figure.reproduction:30:10: there is no panel 'pp'", "did you mean 'p'",
-        "wrong_figure.reproduction:32:13: there is no panel 'nobody'",
-        "wrong_figure.reproduction:34:3: claim 'itself' compares a panel with itself"}) {
-    INFO(finding << "\n" << references.errors);
-    CHECK(contains(references.errors, finding));
-  }
-  checkRefused(runCommand("lumivox check " + data("empty.reproduction")),
-               "empty.reproduction:1:1: reproduction 'empty' has nothing to reproduce");
+TEST_CASE("check tells everything that is wrong in published tables and figures, each at its place") {
+  const auto places = [](const std::string& file, const std::vector<Finding>& findings) {
+    std::vector<Finding> all;
+    for (const Finding& one : findings) all.push_back({file + ".reproduction:" + one.place, one.facts});
+    return all;
+  };
+  const CommandResult checked =
+      typed("check", data("wrong.reproduction"), data("wrong_references.reproduction"),
+            data("wrong_shapes.reproduction"), data("wrong_figure.reproduction"), data("empty.reproduction"));
+  checkFindings(checked, places("wrong", {{"1:1", Tells("reproduction \"wrong\"", "paper")},
+                                          {"6:18", Tells(2, "software_scale")},
+                                          {"7:23", Tells(0, "published")},
+                                          {"7:35", Tells("seconds", "measures")},
+                                          {"8:3", Tells("row \"b\"", "published")},
+                                          {"9:3", Tells("colour")}}));
+  checkFindings(checked,
+                places("wrong_references",
+                       {{"4:9", Tells("no file")},
+                        {"6:11", Tells("resolution")},
+                        {"7:9", Tells("Direct lighting", "shadow_sise", "did you mean", "shadow_size")},
+                        {"7:24", Tells("area_samples")},
+                        {"8:34", Tells("Direct lighting", "gbufer", "did you mean", "gbuffer")},
+                        {"9:3", Tells("b", "fragments")},
+                        {"10:33", Tells("output")},
+                        {"11:35", Tells("no file")},
+                        {"12:55", Tells("Direct lighting", "gbufer")}}));
+  checkFindings(checked, places("wrong_shapes", {{"4:11", Tells(0, "columns")},
+                                                 {"5:3", Tells("curve \"a\"", "over")},
+                                                 {"5:3", Tells("curve \"a\"", "point")},
+                                                 {"5:22", Tells("sideways", "growth")},
+                                                 {"8:26", Tells(9, "subdivisions")},
+                                                 {"10:21", Tells("everything", "reference")},
+                                                 {"10:3", Tells("panel", "name")},
+                                                 {"11:15", Tells("published")},
+                                                 {"13:3", Tells("row", "d", "twice")}}));
+  checkFindings(checked,
+                places("wrong_figure",
+                       {{"8:31", Tells("row", "aa", "did you mean", "a")},
+                        {"9:31", Tells("c", "c")},
+                        {"10:31", Tells("d", "a")},
+                        {"12:10", Tells("Volumetric smoke", "resolutions", "did you mean", "resolution")},
+                        {"17:10", Tells("pixels", "word")},
+                        {"22:5", Tells("point", "curve")},
+                        {"24:22", Tells("output")},
+                        {"26:11", Tells("Volumetric smoke", "stepz")},
+                        {"28:37", Tells("no file")},
+                        {"30:10", Tells("panel", "pp", "did you mean", "p")},
+                        {"32:13", Tells("panel", "nobody")},
+                        {"34:3", Tells("itself")}}));
+  checkFindings(checked, places("empty", {{"1:1", Tells("empty")}}));
 }
 
 TEST_CASE(
     "the committed tables and figures pass check, stand in the canonical layout and have names of their own") {
   std::set<std::string> names;
+  std::string texts;
   const fs::path folder = sourceDirectory() / "scenes/reproductions";
   for (const auto& entry : fs::directory_iterator(folder)) {
     INFO(entry.path());
@@ -103,9 +92,7 @@ TEST_CASE(
     REQUIRE(document.findings.empty());
     CHECK(dsl::format(document) == readFile(entry.path()));
     if (entry.path().extension() == ".scene") continue;  // its model may be absent
-    const CommandResult result = runCommand("lumivox check '" + entry.path().string() + "'");
-    INFO(result.errors);
-    CHECK(result.exitCode == 0);
+    texts += " '" + entry.path().string() + "'";
     if (entry.path().extension() != ".reproduction") continue;
     const std::string id = PublishedResult::load(entry.path()).id;
     CHECK(names.insert(id).second);
@@ -114,39 +101,18 @@ TEST_CASE(
     std::replace(stem.begin(), stem.end(), '-', '_');
     CHECK(entry.path().stem() == stem);
   }
-  const Json list = Json::parse(runCommand("lumivox reproduce --list --json").output);
-  CHECK(list.size() == names.size());
-  for (const char* id : {"000-table-1",
-                         "000-figure-4",
-                         "001-multi-valued-over-binary",
-                         "004-figure-18",
-                         "004-figure-19",
-                         "004-figure-20",
-                         "004-figure-21",
-                         "004-figure-61",
-                         "004-figure-62",
-                         "004-figure-63",
-                         "004-figure-65",
-                         "004-figure-66",
-                         "004-figure-75",
-                         "004-figure-76",
-                         "004-figure-77",
-                         "004-figure-82",
-                         "004-figure-83",
-                         "004-figure-84",
-                         "004-figure-85",
-                         "004-figure-86",
-                         "001-voxelization-binary",
-                         "001-voxelization-multi-valued",
-                         "004-table-1",
-                         "004-table-2",
-                         "004-table-3",
-                         "004-table-4"})
+  ran("check", Raw{texts});
+  CHECK(answered("reproduce --list --json").size() == names.size());
+  for (const char* id : {"000-table-1", "000-figure-4", "001-multi-valued-over-binary",
+                         "001-voxelization-binary", "001-voxelization-multi-valued"})
     CHECK(names.count(id) == 1);
+  for (const int figure : {18, 19, 20, 21, 61, 62, 63, 65, 66, 75, 76, 77, 82, 83, 84, 85, 86})
+    CHECK(names.count("004-figure-" + std::to_string(figure)) == 1);
+  for (const int table : {1, 2, 3, 4}) CHECK(names.count("004-table-" + std::to_string(table)) == 1);
 }
 
 TEST_CASE("tables and figures are listed by first author and year, and taken by that name or by their id") {
-  const Json list = Json::parse(runCommand("lumivox reproduce --list --json").output);
+  const Json list = answered("reproduce --list --json");
   std::set<std::string> names;
   for (const Json& one : list) {
     const std::string id = one["id"], name = one["name"];
@@ -159,19 +125,12 @@ TEST_CASE("tables and figures are listed by first author and year, and taken by 
     INFO(name);
     CHECK(names.count(name) == 1);
   }
-  const std::string wide =
-      "COLUMNS=160 " + (binaryDirectory() / "bin/lumivox").string() + " reproduce --list";
-  const CommandResult byName = runCommand(wide + " mavridis2011-table-1"),
-                      byId = runCommand(wide + " 000-table-1");
-  CHECK(byName.exitCode == 0);
-  CHECK(byName.output == byId.output);
-  CHECK(contains(byName.output, "mavridis2011-table-1"));
-  CHECK(contains(byName.output, "(5 of 20 measured)"));
-  checkRefused(runCommand("lumivox reproduce mavridis2011-table-11 --list"),
-               "did you mean 'mavridis2011-table-1'");
+  const std::string byName = ran(columns(160), "reproduce --list mavridis2011-table-1").output;
+  CHECK(byName == typed(columns(160), "reproduce --list 000-table-1").output);
+  CHECK_THAT(byName, Tells("mavridis2011-table-1", 5, "of", 20));
+  checkRefused(typed("reproduce mavridis2011-table-11 --list"), "did you mean", "mavridis2011-table-1");
   // Names and titles fit a narrow terminal in two lines each.
-  const std::string narrow =
-      runCommand("COLUMNS=80 " + (binaryDirectory() / "bin/lumivox").string() + " reproduce --list").output;
+  const std::string narrow = typed(columns(80), "reproduce --list").output;
   CHECK(static_cast<std::size_t>(std::count(narrow.begin(), narrow.end(), '\n')) < 1 + 3 * list.size());
 }
 
@@ -197,11 +156,11 @@ TEST_CASE("every committed figure makes a claim that its images test, and the fi
 }
 
 TEST_CASE("a table that is not there is refused with the nearest name, and so are other wrong requests") {
-  checkRefused(runCommand("lumivox reproduce 004-table-33 --list"), "did you mean '004-table-3'");
-  checkRefused(runCommand("lumivox reproduce " + data("missing.reproduction")), "missing.reproduction");
-  checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " -o table.txt"),
-               ".html or .md");
-  checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --scale 3"), "--scale");
+  checkRefused(typed("reproduce 004-table-33 --list"), "did you mean", "004-table-3");
+  checkRefused(typed("reproduce", data("missing.reproduction")), "missing.reproduction");
+  checkRefused(typed("reproduce", data("room.reproduction"), "-o table.txt"), ".html", ".md");
+  checkRefused(typed("reproduce", data("room.reproduction"), "--scale 3"), "--scale");
+  checkRefused(typed("reproduce", data("room.reproduction"), "--spp 16"), "--store");
 }
 
 TEST_CASE(
@@ -252,11 +211,12 @@ TEST_CASE(
 }
 
 TEST_CASE("describe knows the words of published tables and figures") {
-  CHECK(contains(runCommand("lumivox describe reproduction").output, "lumivox reproduce ID"));
-  CHECK(contains(runCommand("lumivox describe software_scale").output, "software rasteriser"));
-  CHECK(contains(runCommand("lumivox describe panel").output, "one image of a figure"));
-  CHECK(contains(runCommand("lumivox describe growth").output, "sublinear, linear, superlinear"));
-  CHECK(contains(runCommand("lumivox describe reference").output, "path-traced"));
+  for (const auto& [word, fact] : {std::pair("reproduction", "lumivox reproduce ID"),
+                                   {"software_scale", "software"},
+                                   {"panel", "figure"},
+                                   {"growth", "sublinear, linear, superlinear"},
+                                   {"reference", "path-traced"}})
+    CHECK_THAT(typed("describe", word).output, Tells(fact));
 }
 
 TEST_CASE("a small table is measured: ratios to its first row, a verdict for each, a page and a store") {
@@ -317,7 +277,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   CHECK(contains(text, "Reduced: image sides, resolution times 0.5."));
   CHECK(contains(text, "factor of 1.5"));
 
-  const Json runs = Json::parse(runCommand("lumivox results export --format json --store " + store).output);
+  const Json runs = Json::parse(typed("results export --format json --store", Raw{store}).output);
   REQUIRE(runs.size() == 3);
   // All that a sweep measures: errors and work too.
   for (const Json& run : runs) {
@@ -333,7 +293,6 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   }
   CHECK(runs[0]["identity"]["kept"] == Json::array({"light.radiance", "voxels.fragments"}));
   CHECK(runs[2]["identity"]["kept"].empty());
-  checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --spp 16"), "--store");
 }
 
 TEST_CASE("the page of a reproduced table escapes what the texts say") {
@@ -351,9 +310,7 @@ TEST_CASE("the page of a reproduced table escapes what the texts say") {
     kept += line;
   const fs::path file = directory.write("harm.reproduction", kept);
   const fs::path page = directory.path() / "page.html";
-  const CommandResult result = runCommand("lumivox -q reproduce " + file.string() + " -o " + page.string());
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result = ran("-q reproduce", file, "-o", page);
   CHECK_FALSE(contains(readFile(page), "<script>alert"));
   if (!canDrawPages()) return skip("no node on the path");
   const Json drawn = drawnPage(page);
@@ -366,11 +323,8 @@ TEST_CASE(
     "a small figure is made: a sheet of its panels, curves with a verdict, and reasons for what is absent") {
   const TemporaryDirectory directory;
   const fs::path figures = directory.path() / "figures", page = directory.path() / "page.html";
-  const CommandResult result =
-      runCommand("lumivox -q reproduce " + data("figure.reproduction") +
-                 " --repeats 1 --spp 4 --json --figures " + figures.string() + " -o " + page.string());
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result = ran("-q reproduce", data("figure.reproduction"),
+                                   "--repeats 1 --spp 4 --json --figures", figures, "-o", page);
   const Json figure = Json::parse(result.output).at(0);
   // Voxels that a surface touches grow as the square of the voxels along a side.
   const Json& curve = figure["curves"][0];
@@ -438,9 +392,7 @@ TEST_CASE("figures that are rendered again have the light and the claims that we
   // One of media, one of noise and one of voxels: a second each.
   for (const std::string id : {"004-figure-18", "004-figure-19", "004-figure-64"}) {
     CAPTURE(id);
-    const CommandResult result = runCommand("lumivox -q reproduce " + id + " --repeats 1 --json");
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+    const CommandResult result = ran("-q reproduce", Raw{id}, "--repeats 1 --json");
     const Json made = Json::parse(result.output).at(0);
     const Json all =
         Json::parse(readFile(sourceDirectory() / "docs/benchmarks/reproductions.json")).at("results");
@@ -465,10 +417,8 @@ TEST_CASE("figures that are rendered again have the light and the claims that we
 
 TEST_CASE("openness is shown as it is beside light that is exposed") {
   const TemporaryDirectory directory;
-  const CommandResult result = runCommand("lumivox -q reproduce " + data("occlusion.reproduction") +
-                                          " --repeats 1 --json --figures " + directory.path().string());
-  INFO(result.errors);
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result =
+      ran("-q reproduce", data("occlusion.reproduction"), "--repeats 1 --json --figures", directory.path());
   const Json figure = Json::parse(result.output).at(0);
   CHECK(!figure["panels"][0].contains("radiance"));
   CHECK(figure["panels"][1]["radiance"] == false);

@@ -23,10 +23,6 @@ std::size_t runsIn(const std::string& store) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<double> valuesIn(const std::string& store) {
   std::vector<double> values;
   for (const StoredRun& run : ResultsStore(store, ResultsStore::Mode::read).runs())
@@ -40,40 +36,37 @@ std::vector<double> valuesIn(const std::string& store) {
 TEST_CASE("a report that is killed goes on where it stopped, says so, and gives the same page") {
   const Place place;
   const std::string checkpoint = place.file("page.unfinished.sqlite");
-  const std::vector<std::string> more{"-o", place.file("page.html")};
-  {
-    Started report(place.words("report", {"slow"}, more));
-    REQUIRE(becomes([&] { return runsIn(checkpoint) >= 1; }));
-    report.signalAfter(std::chrono::milliseconds(0), SIGKILL);
-    report.wait();
-  }
+  // The default point is value=1; of the others the first two are there when the third is begun.
+  place.endedAt("4", place.words("report", {"slow"}, {"-o", place.file("page.html")}));
   // A page that is there is whole, and says that more is to come.
-  if (place.has("page.html")) CHECK(Json::parse(place.read("page.json")).at("complete") == false);
-  const std::vector<StoredRun> kept = ResultsStore(checkpoint, ResultsStore::Mode::read).runs();
-  REQUIRE(kept.size() >= 1);  // the default point is measured before the others
-  REQUIRE(kept.size() < 4);
-  const CommandResult again = place.run("report", {"slow"}, more);
+  if (place.has("page.json")) CHECK(Json::parse(place.read("page.json")).at("complete") == false);
+  std::vector<StoredRun> kept;
+  {
+    const ResultsStore store(checkpoint, ResultsStore::Mode::read);
+    kept = store.runs();
+    REQUIRE(kept.size() == 1);
+    CHECK(store.count().untimed == 2);
+  }
+  const CommandResult again = place.run("report", {"slow"}, {"-o", place.file("page.html")});
   INFO(again.errors);
   REQUIRE(again.exitCode == 0);
-  CHECK(contains(again.errors, "taken up from"));
-  CHECK(contains(again.output, std::to_string(kept.size()) + " of 4 points were taken up"));
+  CHECK_THAT(again.output, Tells(1, "of", 4, "points", "taken up"));
+  CHECK_THAT(again.errors, Tells("value=3", "taken up"));
   CHECK_FALSE(std::filesystem::exists(checkpoint));
-  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  const Json points = place.sceneOf("page.json").at("points");
   REQUIRE(points.size() == 4);
   for (const Json& point : points) {
     CHECK(point.at("errors").size() > 0);
     CHECK(point.at("frame_ms").at("repeats") == 3);
     CHECK(point.at("passes").at(0).at("device_ms").at("median") > 0.0);
   }
-  // The kept runs are unchanged.
-  for (const StoredRun& run : kept)
-    CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
-      return point.at("frame_ms").at("median") == run.point.frameMs.median;
-    }));
+  // The kept run is unchanged.
+  CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
+    return point.at("frame_ms").at("median") == kept[0].point.frameMs.median;
+  }));
   // Images of points that were taken up are on the page: an output, a map for each reference.
-  const std::string page = place.read("page.html");
   REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
-  CHECK(pageRecords(page, "images") == pageRecords(place.read("whole.html"), "images"));
+  CHECK(pageRecords(place.read("page.html"), "images") == pageRecords(place.read("whole.html"), "images"));
 }
 
 TEST_CASE(
@@ -116,7 +109,7 @@ TEST_CASE(
   INFO(none.errors);
   CHECK(none.exitCode == 0);
   CHECK(contains(unwrapped(none.output), "no time for 9 points"));
-  CHECK(Json::parse(place.read("none.json")).at("scenes").at(0).at("points").empty());
+  CHECK(place.sceneOf("none.json").at("points").empty());
   if (!canDrawPages()) return;
   const Json page = drawnPage(place.file("none.html"));
   CHECK(page.at("problems").empty());
@@ -126,10 +119,9 @@ TEST_CASE(
 TEST_CASE("a report's page is there before its last point, whole at every moment, and says what is to come") {
   const Place place;
   place.writeSlow("long", "1 2 3 4 5 6 7 8 9");
-  const std::string checkpoint = place.file("page.unfinished.sqlite");
   Started report(place.words("report", {"long"}, {"-o", place.file("page.html")}), place.file("said.txt"),
                  "5");
-  REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=5"); }));
+  REQUIRE(place.comesTo("5"));
   REQUIRE(place.has("page.html"));
   const Json record = Json::parse(place.read("page.json"));
   CHECK(record.at("complete") == false);
@@ -153,13 +145,12 @@ TEST_CASE(
   const CommandResult made = place.run("report", {"slow"}, more);
   INFO(made.errors);
   REQUIRE(made.exitCode == 0);
-  CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("left_out_points").empty());
+  CHECK(place.sceneOf("page.json").at("left_out_points").empty());
   CHECK_FALSE(contains(made.output, "no time for"));
-  CHECK(contains(made.errors, "1 of 4 points, about "));
-  CHECK(contains(made.errors, "4 of 4 points"));
+  CHECK_THAT(made.errors, Tells(1, "of", 4, "points", "about") && Tells(4, "of", 4, "points"));
   const CommandResult sweep = place.run("sweep", {"slow"}, store);
   INFO(sweep.errors);
-  CHECK(contains(sweep.output, "0 measured, 4 already in the store"));
+  CHECK_THAT(sweep.output, Tells(0, "measured", 4, "store"));
   // And the point that was timed twice: with a budget, one.
   const ResultsStore stored(place.file("results.sqlite"), ResultsStore::Mode::read);
   CHECK(stored.controls(stored.runs().front().identity).size() == 1);
@@ -184,9 +175,9 @@ TEST_CASE("a budget in which no point would end is told, with one that begins th
   const std::size_t at = none.find(told) + told.size();
   const std::string budget = none.substr(at, none.find(' ', at) - at);
   CAPTURE(budget);
-  CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").empty());
+  CHECK(place.sceneOf("page.json").at("points").empty());
   CHECK_FALSE(contains(made(budget), "none would have ended in time"));
-  CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() >= 1);
+  CHECK(place.sceneOf("page.json").at("points").size() >= 1);
 }
 
 TEST_CASE("another report on the same page leaves an interrupted one its points, and it goes on with them") {
@@ -196,16 +187,11 @@ TEST_CASE("another report on the same page leaves an interrupted one its points,
   // Killed with one point done and two that lack their times; Ctrl-C tells how to go on.
   for (const int signal : {SIGKILL, SIGINT}) {
     CAPTURE(signal);
-    for (const std::string& earlier : {checkpoint, place.file("said.txt")}) std::filesystem::remove(earlier);
-    {
-      Started report(place.words("report", {"slow"}, toPage), place.file("said.txt"), "4");
-      REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=4"); }));
-      report.signalAfter(std::chrono::milliseconds(0), signal);
-      report.wait();
-    }
+    std::filesystem::remove(checkpoint);
+    place.endedAt("4", place.words("report", {"slow"}, toPage), signal);
     if (signal == SIGINT)
-      CHECK(contains(place.read("said.txt"), checkpoint + " keeps 1 point, and 2 more but for their times; "
-                                                          "to go on: lumivox"));
+      CHECK_THAT(place.read("said.txt"),
+                 Tells(checkpoint, "keeps", 1, "point", 2, "times", "to go on", "lumivox"));
     // One that shares no point, and one that takes up a point of the other and adds one of its own.
     const CommandResult foreign = place.run("report", {"fast"}, toPage);
     INFO(foreign.errors);
@@ -213,14 +199,13 @@ TEST_CASE("another report on the same page leaves an interrupted one its points,
     CHECK(contains(foreign.output, "page.html"));
     CHECK_FALSE(contains(foreign.output, "taken up"));
     REQUIRE(place.has("page.unfinished.sqlite"));
-    CHECK(contains(unwrapped(foreign.errors),
-                   "page.unfinished.sqlite: stays, it keeps 3 points of an interrupted report; to go on: "
-                   "lumivox --techniques"));
+    CHECK_THAT(unwrapped(foreign.errors),
+               Tells("page.unfinished.sqlite", "stays", 3, "points", "to go on", "lumivox --techniques"));
     const CommandResult sharing =
         place.run("report", {"slow", "fast"}, {"-o", place.file("page.html"), "--no-sweep"});
     INFO(sharing.errors);
     CHECK(sharing.exitCode == 0);
-    CHECK(contains(sharing.output, "1 of 2 points were taken up"));
+    CHECK_THAT(sharing.output, Tells(1, "of", 2, "points", "taken up"));
     {
       const ResultsStore kept(checkpoint, ResultsStore::Mode::read);
       CHECK(kept.count().runs == 1);
@@ -230,26 +215,22 @@ TEST_CASE("another report on the same page leaves an interrupted one its points,
     const CommandResult resumed = place.run("report", {"slow"}, toPage);
     INFO(resumed.errors);
     CHECK(resumed.exitCode == 0);
-    CHECK(contains(resumed.output, "1 of 4 points were taken up"));
-    CHECK(contains(resumed.errors, "value=3: taken up from"));
+    CHECK_THAT(resumed.output, Tells(1, "of", 4, "points", "taken up"));
+    CHECK_THAT(resumed.errors, Tells("value=3", "taken up"));
     CHECK_FALSE(contains(resumed.errors, "stays, "));
     CHECK_FALSE(std::filesystem::exists(checkpoint));
-    CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 4);
+    CHECK(place.sceneOf("page.json").at("points").size() == 4);
   }
 }
 
 TEST_CASE("an interrupted report goes on under another command with the same points, and leaves nothing") {
   const Place place;
-  {
-    Started report(place.words("report", {"slow"}, {"-o", place.file("page.html")}), place.file("said.txt"),
-                   "4");
-    REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=4"); }));
-  }
+  place.endedAt("4", place.words("report", {"slow"}, {"-o", place.file("page.html")}));
   const CommandResult again =
       place.run("report", {"slow"}, {"--brief", "--equal-time", "16ms", "-o", place.file("page.html")});
   INFO(again.errors);
   CHECK(again.exitCode == 0);
-  CHECK(contains(again.output, "1 of 4 points were taken up"));
+  CHECK_THAT(again.output, Tells(1, "of", 4, "points", "taken up"));
   CHECK_FALSE(place.has("page.unfinished.sqlite"));
 }
 
@@ -262,7 +243,7 @@ TEST_CASE("of two reports at once on one page the first to end takes no point fr
   stored.insert(stored.end(), {"--store", place.file("results.sqlite")});
   // Held at its last point but one, until the other has ended.
   Started slow(place.words("report", {"long"}, toPage), place.file("long.txt"), "5");
-  REQUIRE(becomes([&] { return place.has("long.txt") && contains(place.read("long.txt"), "value=5"); }));
+  REQUIRE(place.comesTo("5", "long.txt"));
   // With a cache of its own, and so a lock: it could take no times beside one that is held at work.
   setenv("LUMIVOX_CACHE", place.file("other_cache").c_str(), 1);
   const CommandResult other = place.run("report", {"fast"}, stored);
@@ -272,14 +253,14 @@ TEST_CASE("of two reports at once on one page the first to end takes no point fr
   // It adds its own points to its store, and none of the other's.
   CHECK(runsIn(place.file("results.sqlite")) == 4);
   REQUIRE(std::filesystem::exists(checkpoint));
-  CHECK(contains(unwrapped(other.errors), "page.unfinished.sqlite: stays, it keeps the points of process "));
+  CHECK_THAT(unwrapped(other.errors), Tells("page.unfinished.sqlite", "stays", "process", slow.process()));
   const std::size_t before = ResultsStore(checkpoint, ResultsStore::Mode::read).count().untimed;
   CHECK(before == 3);
   slow.signalAfter(std::chrono::milliseconds(0), SIGKILL);
   slow.wait();
   // The killed one is gone on with; meanwhile another on the same page begins and ends.
   Started resumed(place.words("report", {"long"}, toPage), place.file("resumed.txt"));
-  REQUIRE(becomes([&] { return place.has("resumed.txt") && contains(place.read("resumed.txt"), "value="); }));
+  REQUIRE(place.comesTo("", "resumed.txt"));
   CHECK(place.run("report", {"fast"}, toPage).exitCode == 0);
   const int status = resumed.wait();
   INFO(place.read("resumed.txt"));
@@ -287,7 +268,7 @@ TEST_CASE("of two reports at once on one page the first to end takes no point fr
   CHECK_FALSE(contains(place.read("resumed.txt"), "readonly"));
   CHECK(contains(place.read("resumed.txt"), "value=2: taken up from"));
   CHECK_FALSE(std::filesystem::exists(checkpoint));
-  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  const Json points = place.sceneOf("page.json").at("points");
   CHECK(points.size() == 9);
   for (const Json& point : points) CHECK_FALSE(point.contains("failure"));
 }
@@ -301,7 +282,7 @@ TEST_CASE("two reports of the same points at once share them, and both pages are
   CHECK(firstStatus == 0);
   CHECK(secondStatus == 0);
   CHECK_FALSE(place.has("page.unfinished.sqlite"));
-  CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 4);
+  CHECK(place.sceneOf("page.json").at("points").size() == 4);
 }
 
 TEST_CASE("reports that begin while others on the page end lose no point, whoever removes the file") {
@@ -321,7 +302,7 @@ TEST_CASE("reports that begin while others on the page end lose no point, whoeve
       CHECK(status == 0);
     }
     CHECK_FALSE(place.has("page.unfinished.sqlite"));
-    CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 1);
+    CHECK(place.sceneOf("page.json").at("points").size() == 1);
   }
 }
 
@@ -339,7 +320,7 @@ TEST_CASE("a point that fails while it is timed is a row that says why, and the 
       place.run("report", {"tire", "slow"}, {"-o", place.file("page.html"), "--no-sweep"});
   INFO(result.errors);
   CHECK(result.exitCode == 1);
-  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  const Json points = place.sceneOf("page.json").at("points");
   REQUIRE(points.size() == 2);
   CHECK(points[0].at("failure") == "pass paint: the pass is tired; expected fewer frames");
   CHECK(points[0].at("errors").empty());
@@ -401,13 +382,8 @@ TEST_CASE("points that a killed sweep had claimed are measured by the next") {
   const Place place;
   const std::string store = place.file("results.sqlite");
   const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
-  {
-    // A frame of the default point, at 1, is looked at before the points are begun.
-    Started sweep(words, place.file("first.txt"), "2");
-    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=2"); }));
-    sweep.signalAfter(std::chrono::milliseconds(0), SIGKILL);
-    sweep.wait();
-  }
+  // A frame of the default point, at 1, is looked at before the points are begun.
+  place.endedAt("2", words);
   REQUIRE(runsIn(store) == 0);
   const CommandResult next = place.run("sweep", {"slow"}, {"--store", store, "--json"});
   INFO(next.errors);
@@ -421,12 +397,7 @@ TEST_CASE(
   const Place place;
   const std::string store = place.file("results.sqlite");
   const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
-  {
-    Started sweep(words, place.file("first.txt"), "3");
-    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=3"); }));
-    sweep.signalAfter(std::chrono::milliseconds(0), SIGKILL);
-    sweep.wait();
-  }
+  place.endedAt("3", words);
   const auto key = [&](int value) {
     for (const StoredRun& run : ResultsStore(store, ResultsStore::Mode::read).runs())
       if (run.point.parameters.at("value").number == value) return run.identity.key();
@@ -435,7 +406,7 @@ TEST_CASE(
   REQUIRE(runsIn(store) == 0);
   CHECK(ResultsStore(store, ResultsStore::Mode::read).count().untimed == 2);
   // Nothing shows them as results.
-  CHECK(contains(runCommand("lumivox results list --store '" + store + "'").output, "0 runs"));
+  CHECK(contains(typed("results list --store", store).output, "0 runs"));
   const CommandResult next = place.run("sweep", {"slow"}, {"--store", store, "--json"});
   INFO(next.errors);
   CHECK(next.exitCode == 0);
@@ -463,51 +434,20 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a report that is killed in a batch has the images of its points when it goes on") {
-  const Place place;
-  const std::string checkpoint = place.file("page.unfinished.sqlite");
-  // Alone in its batch: the report measures default points first.
-  {
-    Started report(place.words("report", {"slow"}, {"-o", place.file("page.html")}), place.file("first.txt"),
-                   "4");
-    // The default point is value=1; of the others the first two are there when the third is begun.
-    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=4"); }));
-    report.signalAfter(std::chrono::milliseconds(0), SIGKILL);
-    report.wait();
-  }
-  {
-    const ResultsStore kept(checkpoint, ResultsStore::Mode::read);
-    CHECK(kept.count().runs == 1);
-    CHECK(kept.count().untimed == 2);
-  }
-  const CommandResult again = place.run("report", {"slow"}, {"-o", place.file("page.html")});
-  INFO(again.errors);
-  REQUIRE(again.exitCode == 0);
-  CHECK(contains(again.output, "1 of 4 points were taken up"));
-  CHECK(contains(again.errors, "value=3: taken up from"));
-  CHECK_FALSE(std::filesystem::exists(checkpoint));
-  REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
-  CHECK(pageRecords(place.read("page.html"), "images") == pageRecords(place.read("whole.html"), "images"));
-}
-
 TEST_CASE("Ctrl-C says what is kept, and the command that goes on from there") {
   const Place place;
   const std::string store = place.file("results.sqlite");
   const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
   for (const int signal : {SIGINT, SIGTERM}) {
     INFO("signal " << signal);
-    for (const std::string& earlier : {store, place.file("said.txt")}) std::filesystem::remove(earlier);
-    Started sweep(words, place.file("said.txt"), "3");
-    REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=3"); }));
-    sweep.signalAfter(std::chrono::milliseconds(0), signal);
-    const int status = sweep.wait();
+    std::filesystem::remove(store);
+    const int status = place.endedAt("3", words, signal);
     // As without the message: a shell sees that a signal ended it.
     CHECK(WIFSIGNALED(status));
     CHECK(WTERMSIG(status) == signal);
     const std::string said = place.read("said.txt");
     INFO(said);
-    CHECK(contains(said,
-                   "interrupted: " + store + " keeps 0 points, and 2 more but for their times; to go on: "));
+    CHECK_THAT(said, Tells("interrupted", store, "keeps", 0, "points", 2, "times", "to go on"));
     std::string typed = "lumivox";
     for (const std::string& word : words) typed += " " + word;
     CHECK(contains(said, "to go on: " + typed + "\n"));

@@ -2,7 +2,7 @@
 
 #include "laboratory/results_sql.h"
 #include "lumivox/base/file.h"
-#include "support/support.h"
+#include "tools/cli_support.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -35,10 +35,11 @@ struct Sweep {
     store = (directory.path() / "results.sqlite").string();
   }
   CommandResult run(const std::string& more = {}, const std::string& format = "--json") const {
-    return runCommand("lumivox -q sweep " + kScene + " --pipeline " + pipeline + " --store " + store +
-                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 " + format + " " +
-                      more);
+    return typed("-q sweep", kScene, "--pipeline", pipeline, "--store", store,
+                 "--resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1", Raw{format}, Raw{more});
   }
+  /// `results` of the store.
+  CommandResult results(const char* what) const { return typed("results", what, "--store", store); }
 };
 
 }  // namespace
@@ -47,10 +48,9 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
   const Sweep sweep;
   const CommandResult plan = sweep.run("--plan");
   CHECK(Json::parse(plan.output)["missing"].size() == 2);
-  const std::string text = runCommand("lumivox -q sweep " + kScene + " --pipeline " + sweep.pipeline +
-                                      " --store " + sweep.store + " --plan")
-                               .output;
-  CHECK(text.find("2 points are missing, 0 already in the store") != std::string::npos);
+  const std::string text =
+      typed("-q sweep", kScene, "--pipeline", sweep.pipeline, "--store", sweep.store, "--plan").output;
+  CHECK(contains(text, "2 points are missing, 0 already in the store"));
   const CommandResult first = sweep.run();
   INFO(first.errors);
   REQUIRE(first.exitCode == 0);
@@ -112,94 +112,77 @@ TEST_CASE("the memory of a point does not count the points that are timed beside
 TEST_CASE(
     "a point that fits into memory alone but not beside the others is timed after them, and is no failure") {
   const TemporaryDirectory directory;
-  const CommandResult swept =
-      runCommand("lumivox --memory 64MiB sweep " + kScene + " --pipeline " +
-                 (sourceDirectory() / "scenes/pipelines/voxel_cone_tracing.pipeline").string() + " --store " +
-                 (directory.path() / "results.sqlite").string() +
-                 " --resolution 16x16 --spp 4 --subpixels 1 --seeds 1 --repeats 1 --json");
-  INFO(swept.errors);
-  REQUIRE(swept.exitCode == 0);
+  const CommandResult swept = ran("--memory 64MiB sweep", kScene, "--pipeline",
+                                  sourceDirectory() / "scenes/pipelines/voxel_cone_tracing.pipeline",
+                                  "--store", directory.path() / "results.sqlite",
+                                  "--resolution 16x16 --spp 4 --subpixels 1 --seeds 1 --repeats 1 --json");
   const Json summary = Json::parse(swept.output);
   CHECK(summary["failed"] == 0);
   CHECK(summary["measured"] == 4);
-  CHECK(swept.errors.find("timed after the 3 points before it") != std::string::npos);
+  CHECK(contains(swept.errors, "timed after the 3 points before it"));
 }
 
 TEST_CASE("results are listed, exported, merged and removed from the command line") {
   const Sweep sweep;
   REQUIRE(sweep.run().exitCode == 0);
-  const std::string store = " --store " + sweep.store;
-  const CommandResult list = runCommand("lumivox results list --scene cornell" + store);
+  const CommandResult list = sweep.results("list --scene cornell");
   CHECK(list.exitCode == 0);
-  CHECK(list.output.find("area_samples=2") != std::string::npos);
-  CHECK(list.output.find("2 runs") != std::string::npos);
-  const std::string none = runCommand("lumivox results list --scene arcade" + store).output;
-  CHECK(none.find("0 runs") != std::string::npos);
-  CHECK(none.find("it has runs of the scenes cornell; of the pipelines direct") != std::string::npos);
+  CHECK(contains(list.output, "area_samples=2"));
+  CHECK(contains(list.output, "2 runs"));
+  const std::string none = sweep.results("list --scene arcade").output;
+  CHECK(contains(none, "0 runs"));
+  CHECK(contains(none, "it has runs of the scenes cornell; of the pipelines direct"));
 
-  const std::string csv = runCommand("lumivox results export --set area_samples=2" + store).output;
+  const std::string csv = sweep.results("export --set area_samples=2").output;
   const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
   const std::size_t head = csv.find("\r\n");
   REQUIRE(head != std::string::npos);
   // Fields that hold commas are quoted; these have none but the device and the host.
   CHECK(columns(csv.substr(0, head)) > 50);
   CHECK(csv.substr(0, head).find(",parameter_area_samples") != std::string::npos);
-  CHECK(csv.find("area_samples=2") != std::string::npos);
+  CHECK(contains(csv, "area_samples=2"));
   CHECK(csv.find("area_samples=1") == std::string::npos);
   // A sweep prints what it measured, or finds, under the same header.
   const std::string swept = sweep.run("", "--csv").output;
   CHECK(swept.substr(0, swept.find("\r\n")) == csv.substr(0, head));
-  const std::string nothing = runCommand("lumivox results export --scene arcade" + store).output;
+  const std::string nothing = sweep.results("export --scene arcade").output;
   CHECK(nothing == csv.substr(0, csv.find(",parameter_")) + "\r\n");
   const auto file = sweep.directory.path() / "results.json";
-  CHECK(runCommand("lumivox results export --format json -o " + file.string() + store).exitCode == 0);
+  CHECK(typed("results export --format json -o", file, "--store", sweep.store).exitCode == 0);
   CHECK(Json::parse(readFile(file)).size() == 2);
 
   const std::string other = (sweep.directory.path() / "other.sqlite").string();
-  CHECK(runCommand("lumivox results merge " + sweep.store + " --store " + other).output.find("2 runs") !=
-        std::string::npos);
+  CHECK(contains(typed("results merge", sweep.store, "--store", Raw{other}).output, "2 runs"));
   const std::filesystem::path earlier = sweep.directory.path() / "earlier.sqlite";
   writeEarlierStore(earlier, 8);
-  const CommandResult refused = runCommand("lumivox results list --store " + earlier.string());
+  const CommandResult refused = typed("results list --store", earlier);
   CHECK(refused.exitCode == 2);
-  CHECK(refused.errors.find("lumivox results import " + earlier.string()) != std::string::npos);
+  CHECK(contains(refused.errors, "lumivox results import " + earlier.string()));
   const std::string imported = (sweep.directory.path() / "imported.sqlite").string();
-  CHECK(runCommand("lumivox results import " + earlier.string() + " --store " + imported)
-            .output.find("2 runs, 2 stress cells, 1 peak rates") != std::string::npos);
-  CHECK(runCommand("lumivox results list --store " + imported).output.find("2 runs") != std::string::npos);
-  CHECK(runCommand("lumivox results remove --set area_samples=1 --dry-run --store " + other)
-            .output.find("1 runs would be removed") != std::string::npos);
-  CHECK(runCommand("lumivox results remove --set area_samples=1 --store " + other).output ==
-        "1 runs removed\n");
-  const CommandResult changes = runCommand("lumivox compare-runs " + sweep.store + " " + other + " --json");
-  INFO(changes.errors);
-  REQUIRE(changes.exitCode == 0);
+  CHECK(contains(typed("results import", earlier, "--store", Raw{imported}).output,
+                 "2 runs, 2 stress cells, 1 peak rates"));
+  CHECK(contains(typed("results list --store", Raw{imported}).output, "2 runs"));
+  CHECK(contains(typed("results remove --set area_samples=1 --dry-run --store", Raw{other}).output,
+                 "1 runs would be removed"));
+  CHECK(typed("results remove --set area_samples=1 --store", Raw{other}).output == "1 runs removed\n");
+  const CommandResult changes = ran("compare-runs", sweep.store, Raw{other}, "--json");
   const Json compared = Json::parse(changes.output);
   CHECK(compared["compared"] == 1);
   CHECK(compared["only_before"].size() == 1);
   for (const Json& change : compared["changes"]) CHECK(change["significant"] == false);
-  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 point compared") !=
-        std::string::npos);
+  CHECK(contains(typed("compare-runs 1 2 --all --store", sweep.store).output, "1 point compared"));
 }
 
 TEST_CASE("bad requests to the results store are refused with what was expected") {
   const Sweep sweep;
-  const std::string store = " --store " + sweep.store;
-  const CommandResult absent = runCommand("lumivox results list" + store);
-  CHECK(absent.exitCode == 2);
-  CHECK(absent.errors.find("there is no results store") != std::string::npos);
+  checkRefused(sweep.results("list"), "no results store");
   CHECK_FALSE(std::filesystem::exists(sweep.store));
   REQUIRE(sweep.run().exitCode == 0);
-  const CommandResult everything = runCommand("lumivox results remove" + store);
-  CHECK(everything.exitCode == 2);
-  CHECK(everything.errors.find("--all") != std::string::npos);
-  const CommandResult run = runCommand("lumivox compare-runs 1 99" + store);
-  CHECK(run.exitCode == 2);
-  CHECK(run.errors.find("there is no run 99") != std::string::npos);
-  CHECK(runCommand("lumivox results list --set area_samples" + store).exitCode == 2);
-  CHECK(runCommand("lumivox results export --format xml" + store).exitCode == 2);
-  CHECK(runCommand("lumivox results" + store).exitCode == 2);
+  checkRefused(sweep.results("remove"), "--all");
+  checkRefused(typed("compare-runs 1 99 --store", sweep.store), "run", 99);
+  for (const char* what : {"list --set area_samples", "export --format xml", ""})
+    CHECK(sweep.results(what).exitCode == 2);
   const auto text = sweep.directory.write("broken.sqlite", std::string(4096, 'x'));
-  CHECK(runCommand("lumivox results merge " + text.string() + store).exitCode == 2);
-  CHECK(runCommand("lumivox -q sweep " + kScene + " --store " + text.string()).exitCode == 2);
+  CHECK(typed("results merge", text, "--store", sweep.store).exitCode == 2);
+  CHECK(typed("-q sweep", kScene, "--store", text).exitCode == 2);
 }

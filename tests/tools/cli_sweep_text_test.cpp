@@ -15,7 +15,7 @@ std::string data(const std::string& name) {
 }
 
 CommandResult check(const std::string& name) {
-  return runCommand("lumivox check " + data(name));
+  return typed("check", data(name));
 }
 
 /// The sweep of small.sweep at the least cost.
@@ -28,28 +28,27 @@ CommandResult measure(const std::string& store, const std::string& more = {}) {
 
 TEST_CASE("check tells everything that is wrong in a text of sweeps, each at its place") {
   const CommandResult words = check("wrong_words.sweep");
-  checkRefused(words, "wrong_words.sweep:1:15: unknown kind 'gird' of a sweep");
-  for (const char* finding :
-       {"did you mean 'grid'", "wrong_words.sweep:2:46: there is no file",
-        "wrong_words.sweep:2:62: ", "is given twice", "wrong_words.sweep:3:14: the seed 2 is given twice",
-        "wrong_words.sweep:3:16: this is not a seed", "wrong_words.sweep:3:20: this is not a seed",
-        "wrong_words.sweep:4:21: this value does not fit",
-        "wrong_words.sweep:5:3: 'resolution' is swept twice",
-        "wrong_words.sweep:6:3: a sweep needs a list of values; expected cones [a b c]",
-        "wrong_words.sweep:7:15: these steps never reach the upper end",
-        "wrong_words.sweep:8:23: the range runs backwards", "wrong_words.sweep:9:3: malformed steps",
-        "wrong_words.sweep:1:1: the sweep lacks its pipelines",
-        "wrong_words.sweep:11:1: unknown block 'pipeline'", "a second sweep named 'Words'",
-        "wrong_words.sweep:14:14: this is not the name of a file"}) {
-    INFO(finding);
-    CHECK(contains(words.errors, finding));
-  }
-  const CommandResult values = check("wrong_values.sweep");
-  checkRefused(values, "wrong_values.sweep:7:25: this value does not fit the parameter 'resolution'");
-  CHECK(contains(values.errors, "wrong_values.sweep:8:3: no pipeline of the sweep has a parameter 'conez'"));
-  CHECK(contains(values.errors, "did you mean 'cones'"));
-  CHECK(contains(values.errors, "wrong_values.sweep:9:16: this value does not fit the parameter 'samples'"));
-  checkRefused(check("unequal.sweep"), "unequal.sweep:5:3: 'cones' has 2 values, but 'resolution' has 3");
+  checkFindings(words, {{"wrong_words.sweep:1:15", Tells("gird", "did you mean", "grid")},
+                        {"wrong_words.sweep:2:46", Tells("no file")},
+                        {"wrong_words.sweep:2:62", Tells("twice")},
+                        {"wrong_words.sweep:3:14", Tells(2, "twice")},
+                        {"wrong_words.sweep:3:16", Tells("seed")},
+                        {"wrong_words.sweep:3:20", Tells("seed")},
+                        {"wrong_words.sweep:4:21", Tells("value")},
+                        {"wrong_words.sweep:5:3", Tells("resolution", "twice")},
+                        {"wrong_words.sweep:6:3", Tells("list", "cones")},
+                        {"wrong_words.sweep:7:15", Tells("upper end")},
+                        {"wrong_words.sweep:8:23", Tells("backwards")},
+                        {"wrong_words.sweep:9:3", Tells("steps")},
+                        {"wrong_words.sweep:1:1", Tells("pipelines")},
+                        {"wrong_words.sweep:11:1", Tells("pipeline")},
+                        {"wrong_words.sweep:14:14", Tells("file")}});
+  CHECK_THAT(words.errors, Tells("second", "Words"));
+  checkFindings(check("wrong_values.sweep"),
+                {{"wrong_values.sweep:7:25", Tells("resolution")},
+                 {"wrong_values.sweep:8:3", Tells("conez", "did you mean", "cones")},
+                 {"wrong_values.sweep:9:16", Tells("samples")}});
+  checkFindings(check("unequal.sweep"), {{"unequal.sweep:5:3", Tells("cones", 2, "resolution", 3)}});
 }
 
 TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
@@ -57,7 +56,7 @@ TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
   std::size_t seen = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     INFO(entry.path());
-    const CommandResult result = runCommand("lumivox check '" + entry.path().string() + "'");
+    const CommandResult result = typed("check", entry.path());
     INFO(result.errors);
     CHECK(result.exitCode == 0);
     const dsl::Document document = dsl::parse(readFile(entry.path()), entry.path());
@@ -69,11 +68,11 @@ TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
 }
 
 TEST_CASE("describe knows the words of sweeps, and a text without a name is told by its blocks") {
-  CHECK(contains(runCommand("lumivox describe sweep").output, "scenes [...] pipelines [...]"));
-  CHECK(contains(runCommand("lumivox describe seeds").output, "a run of its own"));
+  CHECK(contains(typed("describe sweep").output, "scenes [...] pipelines [...]"));
+  CHECK(contains(typed("describe seeds").output, "a run of its own"));
   const Workplace place;
   place.write("unnamed", "sweep s { scenes [\"room.scene\"]  pipelines [\"none.pipeline\"] }\n");
-  checkRefused(runCommand("lumivox check '" + place.file("unnamed") + "'"), "none.pipeline");
+  checkRefused(typed("check", place.file("unnamed")), "none.pipeline");
 }
 
 TEST_CASE("one text measures scenes by pipelines by parameters by seeds, and the same text again nothing") {

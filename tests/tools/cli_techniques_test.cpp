@@ -76,7 +76,7 @@ TEST_CASE("strict refuses a technique library that would be skipped, whatever is
             Spoiled::quoted(place.file("cones.pipeline")) + " --resolution 8x8 --store " +
             Spoiled::quoted(place.file("runs.sqlite")) + strict}) {
     INFO(command);
-    const CommandResult refused = runCommand("lumivox -q " + command);
+    const CommandResult refused = typed("-q", Raw{command});
     checkRefused(refused, place.file("other/libvoxelization.so") + ": built for another Lumivox");
     CHECK(contains(refused.errors, "refused under --strict"));
   }

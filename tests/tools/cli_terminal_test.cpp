@@ -56,28 +56,25 @@ TEST_CASE("progress in a terminal is one line that fits its width, whatever that
 TEST_CASE(
     "measuring commands tell done, total and time left from the first point on, outside of a terminal too") {
   const Place place;
-  const std::string inputs = place.quoted("room.scene") + " --pipeline " + place.quoted("fast.pipeline");
-  const std::string store = " --store " + place.quoted("results.sqlite");
-  for (const std::string& command : {"report " + inputs + place.quick() + "-o " + place.quoted("page.html"),
-                                     "sweep " + inputs + place.quick() + store}) {
-    const CommandResult result = runCommand(place.program() + command);
-    INFO(command << "\n" << result.errors);
+  for (const CommandResult& result :
+       {place.measured({}, "report", "fast.pipeline", "-o", place / "page.html"),
+        place.measured({}, "sweep", "fast.pipeline", "--store", place / "results.sqlite")}) {
+    INFO(result.errors);
     REQUIRE(result.exitCode == 0);
-    CHECK(contains(result.errors, "measuring: 1 of 4 points, about "));
-    CHECK(contains(result.errors, "measuring: 4 of 4 points, "));
+    CHECK_THAT(result.errors,
+               Tells("measuring", 1, "of", 4, "points", "about") && Tells("measuring", 4, "of", 4, "points"));
   }
-  const CommandResult tuned =
-      runCommand(place.program() + "tune " + inputs + place.quick() +
-                 "--frame-time 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
-  INFO(tuned.errors);
-  CHECK(contains(tuned.errors, "tuning: 1 of 6 points at most, about "));
-  const CommandResult voxels = runCommand("lumivox voxels " + place.quoted("room.scene") +
-                                          " --resolution 8,16 --repeats 2 --no-sweep --pipeline '" +
-                                          committedPipeline("voxelizers/conservative") + "'");
+  CHECK_THAT(place
+                 .measured({}, "tune", "fast.pipeline", "--frame-time 1000s --evaluations 6 --store",
+                           place / "tuned.sqlite")
+                 .errors,
+             Tells("tuning", 1, "of", 6, "points", "about"));
+  const CommandResult voxels =
+      typed("voxels", place.file("room.scene"), "--resolution 8,16 --repeats 2 --no-sweep --pipeline",
+            committedPipeline("voxelizers/conservative"));
   INFO(voxels.errors);
   CHECK(voxels.exitCode == 0);
-  CHECK(contains(voxels.errors, "voxelizers on room: 1 of 6 steps, about "));
-  CHECK(contains(voxels.errors, "voxelizers on room: 6 of 6 steps, "));
+  CHECK_THAT(voxels.errors, Tells("room", 1, "of", 6, "about") && Tells("room", 6, "of", 6));
 }
 
 TEST_CASE("in a terminal a measuring command ends without its line of progress, and quiet ones show none") {
@@ -97,9 +94,8 @@ TEST_CASE("in a terminal a measuring command ends without its line of progress, 
 TEST_CASE("a repeated warning is told once, and at the end how often it was repeated") {
   const Place place;
   place.write("direct.pipeline", readFile(committedPipeline("direct_lighting")));
-  const CommandResult result =
-      runCommand("lumivox voxels " + place.quoted("room.scene") + " --resolution 8,16,32 --pipeline " +
-                 place.quoted("direct.pipeline"));
+  const CommandResult result = typed("voxels", place.file("room.scene"), "--resolution 8,16,32 --pipeline",
+                                     place.file("direct.pipeline"));
   INFO(result.errors);
   CHECK(result.exitCode == 1);
   CHECK(countOf(result.errors, "warning: ") == 2);
@@ -110,12 +106,8 @@ TEST_CASE("a repeated warning is told once, and at the end how often it was repe
 TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
   const Place place;
   const std::string store = place.quoted("results.sqlite"), image = place.quoted("image.exr");
-  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
-                     place.quoted("fast.pipeline") + place.quick() + "--store " + store)
-              .exitCode == 0);
-  REQUIRE(
-      runCommand("lumivox -q reference " + place.quoted("room.scene") + " --spp 2 -o " + image).exitCode ==
-      0);
+  REQUIRE(place.measured({}, "-q sweep", "fast.pipeline", "--store", place / "results.sqlite").exitCode == 0);
+  ran("-q reference", place.file("room.scene"), "--spp 2 -o", Raw{image});
   const std::string room = place.quoted("room.scene"),
                     conservative = committedPipeline("voxelizers/conservative"),
                     cones = committedPipeline("voxel_cone_tracing");
@@ -133,8 +125,7 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
       {"help render", {"--keep-everything", "Options of every command"}}};
   for (const auto& [command, parts] : commands)
     for (const int columns : {80, 100}) {
-      const CommandResult result = runCommand("COLUMNS=" + std::to_string(columns) + " " +
-                                              (binaryDirectory() / "bin/lumivox").string() + " " + command);
+      const CommandResult result = typed(test::columns(columns), Raw{command});
       INFO(command << "\n" << result.output << result.errors);
       REQUIRE(result.exitCode == 0);
       for (const std::string& part : parts) CHECK(contains(result.output, part));
@@ -151,14 +142,9 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
 
 TEST_CASE("stored runs and their front have one line a run at 80 columns, and everything at 160") {
   const Place place;
-  const std::string store = place.quoted("results.sqlite");
-  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
-                     place.quoted("fast.pipeline") + place.quick() + "--store " + store)
-              .exitCode == 0);
-  const auto at = [&](int columns, const std::string& what) {
-    return runCommand("COLUMNS=" + std::to_string(columns) + " " +
-                      (binaryDirectory() / "bin/lumivox").string() + " results " + what + " --store " + store)
-        .output;
+  REQUIRE(place.measured({}, "-q sweep", "fast.pipeline", "--store", place / "results.sqlite").exitCode == 0);
+  const auto at = [&](int columns, const char* what) {
+    return typed(test::columns(columns), "results", what, "--store", place / "results.sqlite").output;
   };
   const std::string list = at(80, "list");
   INFO(list);
@@ -177,7 +163,6 @@ TEST_CASE("stored runs and their front have one line a run at 80 columns, and ev
 
 TEST_CASE("no word of a table is cut that fits the terminal, though lines behind the first are indented") {
   const Place place;
-  const std::string store = place.quoted("results.sqlite");
   // A name of a parameter as long as any, behind others, so that it begins a line of its own.
   place.write(
       "long.pipeline",
@@ -185,13 +170,10 @@ TEST_CASE("no word of a table is cut that fits the terminal, though lines behind
       "  pass paint hostile.paint { deed paint  value $a }\n  pass other hostile.paint { deed paint  value "
       "$smoke_resolution_of_it }\n\n  output direct paint.radiance\n}\n\n"
       "sweep both { a [1 2]  smoke_resolution_of_it [6 7] }\n");
-  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
-                     place.quoted("long.pipeline") + place.quick() + "--store " + store)
-              .exitCode == 0);
+  REQUIRE(place.measured({}, "-q sweep", "long.pipeline", "--store", place / "results.sqlite").exitCode == 0);
   for (const int columns : {70, 80, 100}) {
     const CommandResult listed =
-        runCommand("COLUMNS=" + std::to_string(columns) + " " + (binaryDirectory() / "bin/lumivox").string() +
-                   " results list --store " + store);
+        typed(test::columns(columns), "results list --store", place / "results.sqlite");
     INFO(listed.output);
     CHECK(contains(listed.output, "smoke_resolution_of_it=6"));
   }
@@ -199,9 +181,8 @@ TEST_CASE("no word of a table is cut that fits the terminal, though lines behind
 
 TEST_CASE("an animation counts the frames that were asked for, whatever is rendered for their exposure") {
   const Place place;
-  const CommandResult result = runCommand("lumivox render " + place.quoted("room.scene") + " '" +
-                                          committedPipeline("direct_lighting") +
-                                          "' --resolution 8x8 --frames 0..6 -o " + place.quoted("frame.png"));
+  const CommandResult result = typed("render", place.file("room.scene"), committedPipeline("direct_lighting"),
+                                     "--resolution 8x8 --frames 0..6 -o", place.file("frame.png"));
   INFO(result.errors);
   CHECK(contains(result.errors, "rendering: 7 of 7 frames"));
 }
@@ -209,10 +190,8 @@ TEST_CASE("an animation counts the frames that were asked for, whatever is rende
 TEST_CASE("explain begins with its summary and names what has the same reason together") {
   const Place place;
   const CommandResult result =
-      runCommand("lumivox explain -q --no-times " + place.quoted("room.scene") + " '" +
-                 committedPipeline("voxel_cone_tracing") + "' --set resolution=8 --resolution 8x8");
-  INFO(result.output << result.errors);
-  REQUIRE(result.exitCode == 0);
+      ran("explain -q --no-times", place.file("room.scene"), committedPipeline("voxel_cone_tracing"),
+          "--set resolution=8 --resolution 8x8");
   CHECK(std::regex_search(result.output, std::regex("^[0-9]+ of [0-9]+ passes kept; ")));
   std::smatch counts;
   REQUIRE(std::regex_search(result.output, counts,
@@ -224,7 +203,7 @@ TEST_CASE("colours are for terminals, and NO_COLOR is heard") {
   CHECK(contains(runInTerminal("lumivox list techniques", 100).written, "\x1b[1m"));
   CHECK_FALSE(contains(runInTerminal("NO_COLOR=1 lumivox list techniques", 100).written, "\x1b[1m"));
   CHECK_FALSE(contains(runInTerminal("TERM=dumb lumivox list techniques", 100).written, "\x1b[1m"));
-  CHECK_FALSE(contains(runCommand("lumivox list techniques").output, "\x1b"));
+  CHECK_FALSE(contains(typed("list techniques").output, "\x1b"));
 }
 
 TEST_CASE("an interrupted animation says which images are kept and how it goes on") {
@@ -254,110 +233,104 @@ TEST_CASE("an interrupted animation says which images are kept and how it goes o
 }
 
 TEST_CASE("a word that is no command or option is named with the nearest one") {
-  checkRefused(runCommand("lumivox rendr a b -o c.exr"), "'rendr' is no command of lumivox");
-  checkRefused(runCommand("lumivox rendr"), "did you mean 'render'?");
-  checkRefused(runCommand("lumivox --device software results lst"), "'lst' is no command of lumivox results");
-  checkRefused(runCommand("lumivox results lst"), "did you mean 'list'?");
-  checkRefused(runCommand("lumivox render a.scene b.pipeline -o c.exr --resolutoin 8x8"),
-               "lumivox render has no option '--resolutoin'; did you mean '--resolution'?");
-  checkRefused(runCommand("lumivox help rendr"), "did you mean 'render'?");
+  checkRefused(typed("rendr a b -o c.exr"), "rendr", "lumivox", "did you mean", "render");
+  checkRefused(typed("--device software results lst"), "lst", "lumivox results", "did you mean", "list");
+  checkRefused(typed("render a.scene b.pipeline -o c.exr --resolutoin 8x8"), "lumivox render", "--resolutoin",
+               "did you mean", "--resolution");
+  checkRefused(typed("help rendr"), "did you mean", "render");
 }
 
 TEST_CASE("help is asked for before or behind a command, and ends with the options of every command") {
-  const CommandResult help = runCommand("lumivox help render"), behind = runCommand("lumivox render --help");
+  const CommandResult help = typed("help render"), behind = typed("render --help");
   CHECK(help.exitCode == 0);
   CHECK(behind.exitCode == 0);
   CHECK(contains(help.output, "--keep-everything"));
   for (const char* command :
        {"check", "render", "report", "results list", "stress", "new technique", "cache prune"}) {
     INFO(command);
-    for (const CommandResult& result : {runCommand(std::string("lumivox help ") + command),
-                                        runCommand(std::string("lumivox ") + command + " --help")}) {
+    for (const CommandResult& result : {typed("help", command), typed(command, "--help")}) {
       CHECK(result.exitCode == 0);
       for (const char* part : {"Options of every command", "--assets", "--arithmetic", "--strict", "--quiet"})
         CHECK(contains(result.output, part));
     }
   }
-  CHECK(contains(runCommand("lumivox help").output, "reproduce"));
+  CHECK(contains(typed("help").output, "reproduce"));
 }
 
 TEST_CASE("an option never takes the scene for its own, and pipelines are told from scenes") {
   const Place place;
   const std::string fast = place.quoted("fast.pipeline"), room = place.quoted("room.scene");
   for (const std::string& inputs : {"--pipeline " + fast + " " + room, room + " " + fast}) {
-    const CommandResult result = runCommand(place.program() + "report " + inputs + place.quick() +
-                                            "--no-sweep --json -o " + place.quoted("page.html"));
-    INFO(inputs << "\n" << result.errors);
-    REQUIRE(result.exitCode == 0);
-    CHECK(Json::parse(result.output).at("scenes").at(0).at("points").size() == 1);
+    INFO(inputs);
+    CHECK(answered("--techniques", Place::techniques(), "report", Raw{inputs + Place::quick()},
+                   "--no-sweep --json -o", place / "page.html")
+              .at("scenes")
+              .at(0)
+              .at("points")
+              .size() == 1);
   }
-  checkRefused(runCommand("lumivox report " + fast), "expected a scene's text");
+  checkRefused(typed("report", place / "fast.pipeline"), "scene");
 }
 
 TEST_CASE("times have units as in the texts, and a budget without one is refused") {
   const Place place;
-  const std::string room = place.quoted("room.scene");
-  checkRefused(runCommand("lumivox report " + room + " --budget 30"),
-               "--budget '30': expected a time above 0 with its unit (s, ms or min)");
-  checkRefused(runCommand("lumivox report " + room + " --budget 0s"), "above 0");
-  checkRefused(runCommand("lumivox tune " + room + " --frame-time 16"), "--frame-time '16'");
-  checkRefused(runCommand("lumivox stress --time-limit 3"), "--time-limit '3'");
-  checkRefused(runCommand("lumivox report " + room + " --equal-time 3"), "--equal-time '3'");
-  const std::string render = "lumivox render " + room + " '" + committedPipeline("direct_lighting") +
-                             "' -q --resolution 8x8 --json -o " + place.quoted("image.exr");
+  checkRefused(typed("report", place.scene(), "--budget 30"), "--budget", 30, 0, "unit", "s", "ms", "min");
+  checkRefused(typed("report", place.scene(), "--budget 0s"), "--budget", "0s", "above", 0);
+  checkRefused(typed("tune", place.scene(), "--frame-time 16"), "--frame-time", 16);
+  checkRefused(typed("stress --time-limit 3"), "--time-limit", 3);
+  checkRefused(typed("report", place.scene(), "--equal-time 3"), "--equal-time", 3);
+  const auto render = [&](const char* time) {
+    return place.render("direct_lighting", "--resolution 8x8 --json -o", place / "image.exr", "--time", time);
+  };
   for (const char* time : {"300ms", "0.3s", "0.3", "'0.3 s'"}) {
-    const CommandResult result = runCommand(render + " --time " + time);
+    const CommandResult result = render(time);
     INFO(time << "\n" << result.errors);
     REQUIRE(result.exitCode == 0);
     CHECK(Json::parse(result.output).at("images").at(0).at("time").get<double>() == Approx(0.3));
   }
-  checkRefused(runCommand(render + " --time 3kg"), "--time '3kg': expected a time in ");
-  checkRefused(runCommand("lumivox reference " + room + " --occlusion-distance 1s -o a.exr"), "such as 0.5m");
+  checkRefused(render("3kg"), "--time", "3kg", "time");
+  checkRefused(typed("reference", place.scene(), "--occlusion-distance 1s -o a.exr"), "--occlusion-distance",
+               "1s", "0.5m");
 }
 
 TEST_CASE("a seed is a whole number from 0 in every command") {
   const Place place;
-  const std::string room = place.quoted("room.scene");
-  const std::vector<std::string> commands{
-      "render " + room + " '" + committedPipeline("direct_lighting") + "' -o " + place.quoted("image.exr"),
-      "reference " + room + " -o " + place.quoted("image.exr"), "report " + room, "voxels " + room,
-      "reproduce"};
-  for (const std::string& command : commands)
-    for (const char* seed : {"-1", "1.5", "one", "18446744073709551616"}) {
-      INFO(command << " " << seed);
-      checkRefused(runCommand("lumivox " + command + " --seed " + seed),
-                   std::string("--seed '") + seed + "': expected a whole number from 0");
-    }
+  for (const char* seed : {"-1", "1.5", "one", "18446744073709551616"})
+    for (const CommandResult& result :
+         {place.render("direct_lighting", "-o", place / "image.exr", "--seed", seed),
+          typed("reference", place.scene(), "-o", place / "image.exr", "--seed", seed),
+          typed("report", place.scene(), "--seed", seed), typed("voxels", place.scene(), "--seed", seed),
+          typed("reproduce --seed", seed)})
+      checkRefused(result, "--seed", seed, "whole", 0);
 }
 
 TEST_CASE("render, reference and fmt answer in JSON") {
   const Place place;
   const std::string room = place.quoted("room.scene");
   const CommandResult rendered =
-      runCommand("lumivox render " + room + " '" + committedPipeline("direct_lighting") +
-                 "' -q --resolution 8x8 --frames 0..1 --json -o " + place.quoted("image.exr"));
+      typed("render", Raw{room}, committedPipeline("direct_lighting"),
+            "-q --resolution 8x8 --frames 0..1 --json -o", place.file("image.exr"));
   INFO(rendered.errors);
   const Json images = Json::parse(rendered.output).at("images");
   REQUIRE(images.size() == 2);
   CHECK(images.at(1).at("frame") == 1);
   CHECK(images.at(1).at("file") == place.file("image_0001.exr"));
   CHECK(images.at(1).at("frame_ms").get<double>() > 0.0);
-  const Json reference = Json::parse(
-      runCommand("lumivox reference " + room + " -q --spp 2 --json -o " + place.quoted("reference.exr"))
-          .output);
+  const Json reference =
+      Json::parse(typed("reference", Raw{room}, "-q --spp 2 --json -o", place.file("reference.exr")).output);
   CHECK(reference.at("width") == 24);
   CHECK(reference.at("samples_per_pixel") == 2);
   CHECK(std::count(reference.at("layers").begin(), reference.at("layers").end(), "indirect_glossy") == 1);
   const std::string untidy = place.write("untidy.scene", "scene   \"A\" { }\n").string();
-  const CommandResult formatted = runCommand("lumivox fmt --check --json '" + untidy + "' " + room);
+  const CommandResult formatted = typed("fmt --check --json", untidy, Raw{room});
   CHECK(formatted.exitCode == 1);
   CHECK(Json::parse(formatted.output).at(0).at("changed") == true);
   CHECK(Json::parse(formatted.output).at(1).at("changed") == false);
 }
 
 TEST_CASE("the grammars of editors have every word of the texts") {
-  const CommandResult textMate = runCommand("lumivox describe --highlighting textmate"),
-                      vim = runCommand("lumivox describe --highlighting vim");
+  const CommandResult textMate = typed("describe --highlighting textmate"),
+                      vim = typed("describe --highlighting vim");
   REQUIRE(textMate.exitCode == 0);
   REQUIRE(vim.exitCode == 0);
   const Json grammar = Json::parse(textMate.output);
@@ -377,7 +350,7 @@ TEST_CASE("the grammars of editors have every word of the texts") {
       CHECK(
           std::regex_search(vim.output, std::regex("syntax keyword lumivox(Block|Property) " + word + "\n")));
     }
-  checkRefused(runCommand("lumivox describe --highlighting emacs"), "emacs");
+  checkRefused(typed("describe --highlighting emacs"), "emacs");
   if (runCommand("command -v vim").exitCode != 0) return skip("vim is not installed");
   const Place place;
   const std::string file = place.write("lumivox.vim", vim.output).string();

@@ -15,8 +15,8 @@ TEST_CASE("check reports all findings of all files at once, each with its place,
               "  mesh room { file \"room.obj\"  colour 1 }\n"
               "}\n");
   place.write("wrong.pipeline", "pipeline \"Wrong\" {\n  param size 64 in 1..32\n}\n");
-  const CommandResult result = runCommand("lumivox check '" + place.file("wrong.scene") + "' '" +
-                                          place.scene() + "' '" + place.file("wrong.pipeline") + "'");
+  const CommandResult result =
+      typed("check", place.file("wrong.scene"), place.scene(), place.file("wrong.pipeline"));
   INFO(result.errors);
   CHECK(result.exitCode == 2);
   CHECK(contains(result.errors, "wrong.scene:2:42: "));
@@ -29,8 +29,7 @@ TEST_CASE("check reports all findings of all files at once, each with its place,
 TEST_CASE("check --json holds the same findings as the text") {
   const Workplace place;
   place.write("wrong.scene", "scene \"Wrong\" {\n  camera main { eye 0 0 1  target 0 0 0  fow 30 deg }\n}\n");
-  const CommandResult result =
-      runCommand("lumivox check --json '" + place.file("wrong.scene") + "' '" + place.scene() + "'");
+  const CommandResult result = typed("check --json", place.file("wrong.scene"), place.scene());
   CHECK(result.exitCode == 2);
   const auto json = nlohmann::json::parse(result.output);
   REQUIRE(json.size() == 2);
@@ -53,23 +52,22 @@ TEST_CASE(
   place.write("notes.txt", "remember the milk\n");
   for (const char* name :
        {"missing.scene", "missing.pipeline", "empty.scene", "binary.scene", "open.scene", "notes.txt"}) {
-    const CommandResult result = runCommand("lumivox check '" + place.file(name) + "'");
+    const CommandResult result = typed("check", place.file(name));
     INFO(name);
     checkRefused(result, name);
   }
-  checkRefused(runCommand("lumivox check '" + place.path().string() + "'"), place.path().string());
+  checkRefused(typed("check", place.path()), place.path().string());
 }
 
 TEST_CASE("every committed scene and pipeline passes check") {
   if (!std::filesystem::exists(sourceDirectory() / "../shared/models"))
     return skip("the models of some scenes are not on this machine");
   const std::string scenes = (sourceDirectory() / "scenes").string();
-  const CommandResult pipelines = runCommand("lumivox check '" + scenes + "'/pipelines/*.pipeline");
+  const CommandResult pipelines = typed("check", scenes, "/pipelines/*.pipeline");
   INFO(pipelines.errors);
   CHECK(pipelines.exitCode == 0);
   CHECK(pipelines.errors.empty());
-  const CommandResult texts =
-      runCommand("lumivox check --json '" + scenes + "'/*.scene '" + scenes + "'/stress/*.scene");
+  const CommandResult texts = typed("check --json", scenes, "/*.scene", scenes, "/stress/*.scene");
   INFO(texts.output << texts.errors);
   CHECK(texts.exitCode == 0);
   CHECK(texts.errors.empty());
@@ -84,15 +82,13 @@ TEST_CASE("fmt lays out in place, keeps comments, and a second run changes nothi
               "# a room\nscene   \"Ugly\"{ camera main{eye 0 0 1 target 0 0 0} # the eye\n mesh room {file "
               "\"room.obj\"}}");
   const std::string quoted = "'" + place.file("ugly.scene") + "'";
-  CHECK(runCommand("lumivox fmt --check " + quoted).exitCode == 1);
-  const CommandResult first = runCommand("lumivox fmt " + quoted);
-  INFO(first.errors);
-  REQUIRE(first.exitCode == 0);
+  CHECK(typed("fmt --check", Raw{quoted}).exitCode == 1);
+  const CommandResult first = ran("fmt", Raw{quoted});
   const std::string once = place.read("ugly.scene");
   CHECK(contains(once, "# a room"));
   CHECK(contains(once, "# the eye"));
-  CHECK(runCommand("lumivox fmt --check " + quoted).exitCode == 0);
-  CHECK(runCommand("lumivox fmt " + quoted).exitCode == 0);
+  CHECK(typed("fmt --check", Raw{quoted}).exitCode == 0);
+  CHECK(typed("fmt", Raw{quoted}).exitCode == 0);
   CHECK(place.read("ugly.scene") == once);
 }
 
@@ -101,52 +97,48 @@ TEST_CASE("fmt touches no file when one of them is wrong") {
   const std::string ugly = "scene   \"Ugly\"{ camera main{eye 0 0 1 target 0 0 0} }";
   place.write("ugly.scene", ugly);
   place.write("wrong.scene", "scene \"Wrong\" { camera main { eye 0 0 1 }\n");
-  checkRefused(
-      runCommand("lumivox fmt '" + place.file("ugly.scene") + "' '" + place.file("wrong.scene") + "'"),
-      "wrong.scene");
+  checkRefused(typed("fmt", place.file("ugly.scene"), place.file("wrong.scene")), "wrong.scene");
   CHECK(place.read("ugly.scene") == ugly);
 }
 
 TEST_CASE("describe knows the words of both texts and names the nearest for one that it does not know") {
   for (const char* word : {"camera", "fov", "material", "pass", "sweep"}) {
     INFO(word);
-    const CommandResult result = runCommand(std::string("lumivox describe ") + word);
+    const CommandResult result = typed("describe", word);
     CHECK(result.exitCode == 0);
     CHECK(contains(result.output, word));
   }
-  CHECK(contains(runCommand("lumivox describe fov").output, "deg"));
-  const CommandResult unknown = runCommand("lumivox describe fow");
+  CHECK(contains(typed("describe fov").output, "deg"));
+  const CommandResult unknown = typed("describe fow");
   checkRefused(unknown, "did you mean 'fov'");
-  checkRefused(runCommand("lumivox describe"), "expected a word");
+  checkRefused(typed("describe"), "expected a word");
 }
 
 TEST_CASE("describe knows techniques, passes, ports and parameters from the libraries") {
-  CHECK(contains(runCommand("lumivox describe direct_lighting").output, "technique direct_lighting"));
-  const CommandResult pass = runCommand("lumivox describe voxel_cone_tracing.gather");
+  CHECK(contains(typed("describe direct_lighting").output, "technique direct_lighting"));
+  const CommandResult pass = typed("describe voxel_cone_tracing.gather");
   INFO(pass.errors);
   CHECK(contains(pass.output, "inputs"));
   CHECK(contains(pass.output, "cones"));
-  CHECK(
-      contains(runCommand("lumivox describe cones").output, "parameter cones of voxel_cone_tracing.gather"));
-  CHECK(contains(runCommand("lumivox describe gbuffer").output, "direct_lighting.gbuffer"));
+  CHECK(contains(typed("describe cones").output, "parameter cones of voxel_cone_tracing.gather"));
+  CHECK(contains(typed("describe gbuffer").output, "direct_lighting.gbuffer"));
 }
 
 TEST_CASE("describe says what readers of a kind must heed, and what they get otherwise") {
-  const std::string light = runCommand("lumivox describe ShGrid").output;
+  const std::string light = typed("describe ShGrid").output;
   INFO(light);
   for (const char* text :
        {"readers heed quantity: flux", "readers heed unit: the value that the number 1 stands for",
         "too bright or too dark by this factor", "readers heed readFor: the one reading"})
     CHECK(contains(light, text));
-  CHECK(contains(runCommand("lumivox describe RadianceGrid").output,
-                 "readers of coarser levels heed opacity: "));
-  CHECK_FALSE(contains(runCommand("lumivox describe BinaryGrid").output, "heed"));
-  CHECK(contains(runCommand("lumivox describe --markdown").output,
+  CHECK(contains(typed("describe RadianceGrid").output, "readers of coarser levels heed opacity: "));
+  CHECK_FALSE(contains(typed("describe BinaryGrid").output, "heed"));
+  CHECK(contains(typed("describe --markdown").output,
                  "`opacity` (readers of coarser levels): whether the opacity of a coarser voxel"));
 }
 
 TEST_CASE("describe --markdown is the whole reference") {
-  const CommandResult result = runCommand("lumivox describe --markdown");
+  const CommandResult result = typed("describe --markdown");
   CHECK(result.exitCode == 0);
   for (const char* part :
        {"## Scene texts", "## Pipeline texts", "## Techniques", "### direct_lighting", "`cones`", "`fov`"})
@@ -155,9 +147,7 @@ TEST_CASE("describe --markdown is the whole reference") {
 
 TEST_CASE("list names the committed texts and the built techniques, and its JSON parses") {
   const auto names = [](const std::string& what) {
-    const CommandResult result = runCommand("lumivox list " + what + " --json");
-    INFO(result.errors);
-    REQUIRE(result.exitCode == 0);
+    const CommandResult result = ran("list", Raw{what}, "--json");
     std::vector<std::string> list;
     for (const auto& entry : nlohmann::json::parse(result.output)) list.push_back(entry.at("name"));
     return list;
@@ -169,33 +159,31 @@ TEST_CASE("list names the committed texts and the built techniques, and its JSON
   CHECK(has(names("pipelines"), "voxel_cone_tracing"));
   CHECK(has(names("techniques"), "voxelization"));
   CHECK(has(names("passes"), "direct_lighting.gbuffer"));
-  CHECK(contains(runCommand("lumivox list scenes").output, "Cornell box"));
-  CHECK(runCommand("lumivox list gardens").exitCode == 2);
+  CHECK(contains(typed("list scenes").output, "Cornell box"));
+  CHECK(typed("list gardens").exitCode == 2);
 }
 
 TEST_CASE("a technique library that is broken is reported with its path, and the others are still listed") {
   const Workplace place;
   place.write("plugins/libbroken.so", "this is no library");
-  const CommandResult result =
-      runCommand("lumivox list techniques --techniques '" + place.file("plugins") + "' --techniques '" +
-                 (binaryDirectory() / "lib/techniques").string() + "'");
+  const CommandResult result = typed("list techniques --techniques", place.file("plugins"), "--techniques",
+                                     binaryDirectory() / "lib/techniques");
   CHECK(result.exitCode == 0);
   CHECK(contains(result.errors, "libbroken.so"));
   CHECK(contains(result.output, "direct_lighting"));
 }
 
 TEST_CASE("unknown commands and options are bad input, help and version are not") {
-  CHECK(runCommand("lumivox").exitCode == 2);
-  CHECK(runCommand("lumivox paint").exitCode == 2);
-  CHECK(runCommand("lumivox render --colour red").exitCode == 2);
-  CHECK(runCommand("lumivox --help").exitCode == 0);
-  CHECK(runCommand("lumivox report --help").exitCode == 0);
-  CHECK(contains(runCommand("lumivox --version").output, "lumivox "));
+  CHECK(typed("").exitCode == 2);
+  CHECK(typed("paint").exitCode == 2);
+  CHECK(typed("render --colour red").exitCode == 2);
+  CHECK(typed("--help").exitCode == 0);
+  CHECK(typed("report --help").exitCode == 0);
+  CHECK(contains(typed("--version").output, "lumivox "));
 }
 
 TEST_CASE("the reference in docs is what describe --markdown writes today") {
-  const CommandResult result = runCommand("lumivox describe --markdown");
-  REQUIRE(result.exitCode == 0);
+  const CommandResult result = ran("describe --markdown");
   const bool same = result.output == readFile(sourceDirectory() / "docs/reference.md");
   INFO("bring it up to date: ./run describe --markdown > docs/reference.md");
   CHECK(same);
@@ -204,7 +192,7 @@ TEST_CASE("the reference in docs is what describe --markdown writes today") {
 TEST_CASE("describe answers in JSON with numbers in base units, and switches and words as what they are") {
   using Json = nlohmann::json;
   const auto described = [](const std::string& word) {
-    return Json::parse(runCommand("lumivox describe " + word + " --json").output).at("found");
+    return Json::parse(typed("describe", Raw{word}, "--json").output).at("found");
   };
   const auto member = [](const Json& list, const std::string& word) {
     const auto found =
@@ -248,5 +236,5 @@ TEST_CASE("describe answers in JSON with numbers in base units, and switches and
   CHECK(heeded.at(0).at("readers") == "");
   CHECK(heeded.at(2).at("readers") == "of coarser levels");
   CHECK(described("voxelization").at(0).at("what") == "technique");
-  checkRefused(runCommand("lumivox describe conse --json"), "conse");
+  checkRefused(typed("describe conse --json"), "conse");
 }

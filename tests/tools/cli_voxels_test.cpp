@@ -29,10 +29,10 @@ std::uint64_t shellOf(std::uint64_t side) {
   return outer * outer * outer - inner * inner * inner;
 }
 
-CommandResult measure(const Workplace& place, const std::string& more) {
+template <class... Words>
+CommandResult measure(const Workplace& place, const Words&... words) {
   place.write("voxels.pipeline", kVoxels);
-  return runCommand("lumivox -q voxels '" + place.scene() + "' --repeats 1 --pipelines '" +
-                    place.file("voxels.pipeline") + "' " + more);
+  return typed("-q voxels", place.scene(), "--repeats 1 --pipelines", place / "voxels.pipeline", words...);
 }
 
 VoxelizerOptions committedConservative(std::vector<int> resolutions) {
@@ -166,7 +166,7 @@ TEST_CASE("a power law through the medians has the exponent that made them") {
 
 TEST_CASE("the page, the CSV and the JSON hold the same records, and the page needs nothing else") {
   Workplace place;
-  const CommandResult result = measure(place, "--resolution 16,32 -o '" + place.file("out") + "'");
+  const CommandResult result = measure(place, "--resolution 16,32 -o", place / "out");
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   CHECK(contains(result.output, "voxels voxels.fragments"));
@@ -190,16 +190,14 @@ TEST_CASE("a report has a section on voxelizers when it is asked for, and only t
               "  pass shadow direct_lighting.shadow_map { size 64 }\n"
               "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n"
               "  output direct direct.radiance\n}\n");
-  const std::string report =
-      "lumivox -q report '" + place.scene() + "' --pipeline '" + place.file("direct.pipeline") +
-      "' --spp 4 --subpixels 1 --repeats 1 --seeds 1 --no-sweep -o '" + place.file("report.html") + "' ";
-  REQUIRE(runCommand(report).exitCode == 0);
-  CHECK_FALSE(pageRecords(place.read("report.html")).contains("voxels"));
+  const auto report = [&](const char* voxels) {
+    ran("-q report", place.scene(), "--pipeline", place / "direct.pipeline",
+        "--spp 4 --subpixels 1 --repeats 1 --seeds 1 --no-sweep", voxels, "-o", place / "report.html");
+    return pageRecords(place.read("report.html")).contains("voxels");
+  };
+  CHECK_FALSE(report(""));
   CHECK(!nlohmann::json::parse(place.read("report.json")).contains("voxels"));
-  const CommandResult asked = runCommand(report + "--voxels 16");
-  INFO(asked.errors);
-  REQUIRE(asked.exitCode == 0);
-  CHECK(pageRecords(place.read("report.html")).contains("voxels"));
+  CHECK(report("--voxels 16"));
   bool conservative = false;
   const nlohmann::json json = nlohmann::json::parse(place.read("report.json"));
   for (const auto& record : json["voxels"])
@@ -214,40 +212,35 @@ TEST_CASE("a pipeline without voxels and one without a resolution are passed ove
               "direct_lighting.shadow_map { size $resolution }\n}\n");
   place.write("fixed.pipeline",
               "pipeline \"Fixed\" {\n  pass voxels voxelization.conservative { resolution 16 }\n}\n");
-  const CommandResult result = measure(place, "--resolution 16 --pipelines '" + place.file("other.pipeline") +
-                                                  "' --pipelines '" + place.file("fixed.pipeline") + "'");
+  const CommandResult result = measure(place, "--resolution 16 --pipelines", place / "other.pipeline",
+                                       "--pipelines", place / "fixed.pipeline");
   INFO(result.errors);
   CHECK(result.exitCode == 0);
-  CHECK(contains(unwrapped(result.output), "other, resolution 16: it makes no voxels"));
-  CHECK(contains(unwrapped(result.output), "fixed, resolution 16: it has no parameter 'resolution'"));
-  const CommandResult none = runCommand("lumivox -q voxels '" + place.scene() +
-                                        "' --repeats 1 --pipelines '" + place.file("fixed.pipeline") + "'");
-  CHECK(none.exitCode == 1);
+  CHECK_THAT(unwrapped(result.output), Tells("other", 16, "no voxels") && Tells("fixed", 16, "resolution"));
+  CHECK(typed("-q voxels", place.scene(), "--repeats 1 --pipelines", place / "fixed.pipeline").exitCode == 1);
   // Beyond what a text allows, that voxelizer alone has no numbers.
   place.write("small.pipeline",
               "pipeline \"Small\" {\n  param resolution 16 in 1..32\n  pass voxels "
               "voxelization.conservative { resolution $resolution }\n}\n");
-  const CommandResult beyond =
-      measure(place, "--resolution 64 --pipelines '" + place.file("small.pipeline") + "'");
+  const CommandResult beyond = measure(place, "--resolution 64 --pipelines", place / "small.pipeline");
   CHECK(beyond.exitCode == 0);
-  CHECK(contains(unwrapped(beyond.output), "the value must be a number in 1..32"));
+  CHECK_THAT(unwrapped(beyond.output), Tells("1..32"));
 }
 
 TEST_CASE("bad input of the voxels command is refused before any work, and names what it is about") {
   Workplace place;
-  checkRefused(measure(place, "--resolution 0"), "--resolution 0: expected 1..1024");
-  checkRefused(measure(place, "--resolution 2000"), "--resolution 2000: expected 1..1024");
-  checkRefused(measure(place, "--resolution 16,x"), "--resolution '16,x'");
-  checkRefused(measure(place, "--resolution 16 --set nothing=3"), "nothing");
-  checkRefused(measure(place, "--pipelines '" + place.file("nowhere") + "'"), "nowhere");
-  checkRefused(measure(place, "--camera nobody"), "nobody");
-  fs::create_directory(place.path() / "empty");
-  checkRefused(measure(place, "--pipelines '" + place.file("empty") + "'"),
-               "the folder contains no pipeline");
+  fs::create_directory(place / "empty");
   place.write("wrong.pipeline", "pipeline \"Wrong\" {\n  pass a voxelization.conservativ { }\n}\n");
-  checkRefused(measure(place, "--pipelines '" + place.file("wrong.pipeline") + "'"), "conservativ");
   place.write("file", "");
-  checkRefused(measure(place, "-o '" + place.file("file") + "'"), "file");
+  checkRefused(measure(place, "--resolution 0"), "--resolution", 0, "1..1024");
+  checkRefused(measure(place, "--resolution 2000"), "--resolution", 2000, "1..1024");
+  checkRefused(measure(place, "--resolution 16,x"), "--resolution", "16,x");
+  checkRefused(measure(place, "--resolution 16 --set nothing=3"), "nothing");
+  checkRefused(measure(place, "--camera nobody"), "nobody");
+  checkRefused(measure(place, "--pipelines", place / "nowhere"), "nowhere");
+  checkRefused(measure(place, "--pipelines", place / "empty"), "empty", "no pipeline");
+  checkRefused(measure(place, "--pipelines", place / "wrong.pipeline"), "conservativ");
+  checkRefused(measure(place, "-o", place / "file"), "file");
 }
 
 TEST_CASE("the conservative voxelizer misses no voxel of any committed scene, and hardly any is wrong",

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
 
 namespace fs = std::filesystem;
 
@@ -16,14 +17,54 @@ std::string trimmed(const std::string& text) {
   return from == std::string::npos ? "" : text.substr(from, to - from + 1);
 }
 
-/// Line breaks and indentation are layout.
-std::string onOneLine(const std::string& text) {
-  static const std::regex blanks("\\s+");
-  return std::regex_replace(text, blanks, " ");
-}
-
 bool matches(const std::string& text, const char* pattern) {
   return std::regex_search(text, std::regex(pattern));
+}
+
+/// Whether a regular expression is found in a text whose lines begin and end with ^ and $.
+bool isFound(const std::string& pattern, const std::string& text) {
+  return std::regex_search(text, std::regex(pattern, std::regex::ECMAScript | std::regex::multiline));
+}
+
+std::vector<std::string> splitAt(const std::string& text, const std::string& between) {
+  std::vector<std::string> parts;
+  std::size_t from = 0;
+  for (std::size_t to = 0; to != std::string::npos; from = to + between.size())
+    parts.push_back(text.substr(from, (to = text.find(between, from)) - from));
+  return parts;
+}
+
+std::string lastLine(const std::string& text) {
+  const std::string lines = text.substr(0, text.find_last_not_of('\n') + 1);
+  return lines.substr(lines.rfind('\n') + 1);
+}
+
+bool isWritten(const fs::path& file) {
+  return fs::exists(file) && !fs::is_empty(file);
+}
+
+/// Whether a mark holds; `exits` apart.
+bool holds(const Mark& mark, const CommandResult& result, const fs::path& folder) {
+  const std::string all = result.output + result.errors;
+  const auto each = [](const std::string& list, const char* between, const auto& check) {
+    const std::vector<std::string> parts = splitAt(list, between);
+    return std::all_of(parts.begin(), parts.end(), check);
+  };
+  if (mark.verb == "prints")
+    return each(mark.what, " ; ", [&](const std::string& one) { return isFound(one, all); });
+  if (mark.verb == "lacks")
+    return each(mark.what, " ; ", [&](const std::string& one) { return !isFound(one, all); });
+  if (mark.verb == "ends with") return isFound(mark.what, lastLine(result.output));
+  if (mark.verb == "writes")
+    return each(mark.what, " ", [&](const std::string& one) { return isWritten(folder / one); });
+  if (mark.verb == "writes no")
+    return each(mark.what, " ", [&](const std::string& one) { return !fs::exists(folder / one); });
+  const std::size_t blank = mark.what.find(' ');  // layers
+  const fs::path file = folder / mark.what.substr(0, blank);
+  if (!isWritten(file)) return false;
+  const LayeredImage image = readExr(file);
+  return each(mark.what.substr(blank + 1), " ",
+              [&](const std::string& one) { return image.layers.count(one) == 1; });
 }
 
 /// All of the tree but what is built, written or kept by version control.
@@ -158,8 +199,66 @@ std::string reduced(std::string command) {
   return command;
 }
 
+std::vector<Step> stepsOf(const std::string& markdown) {
+  static const std::regex mark("<!-- checked(?: \\[(.*?)\\])?: (.*?) -->"),
+      verbs("(runs|prints|lacks|ends with|exits|writes no|writes|layers) (.+)");
+  std::vector<Step> steps;
+  std::istringstream stream(markdown);
+  std::string language;
+  bool inside = false;
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    if (line.rfind("```", 0) == 0) {
+      inside = !inside;
+      language = line.substr(3);
+    } else if (inside) {
+      if (language != "sh") continue;
+      for (std::string& command : commandLinesOf("```sh\n" + line + "\n```\n"))
+        steps.push_back({number, std::move(command), {}, false, {}});
+    } else {
+      for (std::sregex_iterator one(line.begin(), line.end(), mark), end; one != end; ++one) {
+        const std::string part = (*one)[1], all = (*one)[2];
+        INFO("line " << number << ": " << one->str());
+        std::smatch words;
+        REQUIRE(std::regex_match(all, words, verbs));
+        if (words[1] == "runs") {
+          steps.push_back({number, words[2], {}, false, {}});
+          continue;
+        }
+        const auto about = std::find_if(steps.rbegin(), steps.rend(), [&](const Step& step) {
+          return step.command.find(part) != std::string::npos;
+        });
+        REQUIRE(about != steps.rend());
+        about->marks.push_back({number, words[1], words[2]});
+      }
+    }
+  }
+  return steps;
+}
+
+std::string unheld(const Step& step, const fs::path& folder) {
+  if (step.omitted) return "";
+  const std::string said = step.result.output + step.result.errors;
+  std::string all;
+  int expected = 0;
+  for (const Mark& mark : step.marks)
+    if (mark.verb == "exits") {
+      const std::vector<std::string> parts = splitAt(mark.what, " if it prints ");
+      if (parts.size() == 1 || isFound(parts[1], said)) expected = std::stoi(parts[0]);
+    } else if (!holds(mark, step.result, folder)) {
+      all += std::to_string(mark.line) + ": not so: " + mark.verb + " " + mark.what + "\n";
+    }
+  if (step.result.exitCode != expected)
+    all += std::to_string(step.line) + ": exit code " + std::to_string(step.result.exitCode) +
+           " in place of " + std::to_string(expected) + "\n";
+  return all;
+}
+
 FollowedGuide::FollowedGuide(const std::string& name)
-    : text_(readFile(sourceDirectory() / name)), path_((home_.path() / "stand_ins").string()) {
+    : name_(name),
+      path_((home_.path() / "stand_ins").string()),
+      steps_(stepsOf(readFile(sourceDirectory() / name))) {
   copyTree(sourceDirectory(), folder());
   // As after the set-up: configured, packages found, programs built.
   fs::create_directories(folder() / "build");
@@ -173,23 +272,25 @@ FollowedGuide::FollowedGuide(const std::string& name)
   }
   path_ += ":" + (folder() / "build/bin").string();
   run("command -v git && git init -q . && git add -A");
-  follow(commandLinesOf(text_));
+  follow();
 }
 
 FollowedGuide::FollowedGuide(const std::string& name,
                              const std::vector<std::pair<std::string, std::string>>& words,
                              const std::vector<fs::path>& programs)
-    : text_(readFile(sourceDirectory() / name)) {
+    : name_(name), steps_(stepsOf(readFile(sourceDirectory() / name))) {
   for (const fs::path& program : programs) path_ += (path_.empty() ? "" : ":") + program.string();
   fs::create_directories(folder());
-  std::vector<std::string> commands = commandLinesOf(text_);
-  for (std::string& command : commands) {
+  const auto replace = [&](std::string& text) {
     for (const auto& [word, by] : words)
-      for (std::size_t at = command.find(word); at != std::string::npos;
-           at = command.find(word, at + by.size()))
-        command.replace(at, word.size(), by);
+      for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+        text.replace(at, word.size(), by);
+  };
+  for (Step& step : steps_) {
+    replace(step.command);
+    for (Mark& mark : step.marks) replace(mark.what);
   }
-  follow(commands);
+  follow();
 }
 
 std::string FollowedGuide::environment() const {
@@ -199,41 +300,42 @@ std::string FollowedGuide::environment() const {
          "export PATH='" + path_ + "':\"$PATH\"\n";
 }
 
-void FollowedGuide::follow(const std::vector<std::string>& commands) {
+void FollowedGuide::follow() {
   const auto output = [&](std::size_t i, const char* kind) {
     return home_.path() / ("said_" + std::to_string(i) + "." + kind);
   };
   std::string script = environment();
-  for (const std::string& command : commands) {
-    const auto omission = std::find_if(omissions().begin(), omissions().end(),
-                                       [&](const Omission& one) { return matches(command, one.pattern); });
-    if (omission != omissions().end() && (omission->needs[0] == '\0' || run(omission->needs).exitCode != 0)) {
-      ++omitted_;
-      continue;
-    }
-    const std::size_t i = commands_.size();
-    commands_.push_back({command, {}});
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    Step& step = steps_[i];
+    const auto omission = std::find_if(omissions().begin(), omissions().end(), [&](const Omission& one) {
+      return matches(step.command, one.pattern);
+    });
+    step.omitted =
+        omission != omissions().end() && (omission->needs[0] == '\0' || run(omission->needs).exitCode != 0);
+    if (step.omitted) continue;
     // In the shell itself, so that `cd` and `export` hold for what follows.
-    script += "{ " + reduced(command) + "\n} >'" + output(i, "out").string() + "' 2>'" +
+    script += "{ " + reduced(step.command) + "\n} >'" + output(i, "out").string() + "' 2>'" +
               output(i, "err").string() + "' </dev/null; echo $? >'" + output(i, "code").string() + "'\n";
   }
   const fs::path file = home_.write("follow.sh", script);
   const CommandResult shell = runCommand("bash '" + file.string() + "'");
   INFO(shell.errors);
   REQUIRE(shell.exitCode == 0);
-  for (std::size_t i = 0; i < commands_.size(); ++i) {
-    INFO(commands_[i].command);
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    if (steps_[i].omitted) continue;
+    INFO(steps_[i].command);
     REQUIRE(fs::exists(output(i, "code")));
-    commands_[i].result = {std::stoi(readFile(output(i, "code"))), readFile(output(i, "out")),
-                           readFile(output(i, "err"))};
+    steps_[i].result = {std::stoi(readFile(output(i, "code"))), readFile(output(i, "out")),
+                        readFile(output(i, "err"))};
   }
 }
 
 const CommandResult& FollowedGuide::of(const std::string& part) const {
-  const auto has = [&](const Followed& one) { return one.command.find(part) != std::string::npos; };
   INFO(part);
-  const auto found = std::find_if(commands_.rbegin(), commands_.rend(), has);
-  REQUIRE(found != commands_.rend());
+  const auto found = std::find_if(steps_.rbegin(), steps_.rend(), [&](const Step& step) {
+    return !step.omitted && step.command.find(part) != std::string::npos;
+  });
+  REQUIRE(found != steps_.rend());
   return found->result;
 }
 
@@ -241,23 +343,23 @@ CommandResult FollowedGuide::run(const std::string& command) const {
   return runCommand(environment() + command);
 }
 
-bool FollowedGuide::says(const std::string& sentence) const {
-  return onOneLine(text_).find(onOneLine(sentence)) != std::string::npos;
-}
-
 bool FollowedGuide::has(const std::string& name) const {
   return fs::exists(file(name));
 }
 
-std::string FollowedGuide::failures(const std::vector<std::string>& expected) const {
+std::size_t FollowedGuide::omitted() const {
+  return static_cast<std::size_t>(
+      std::count_if(steps_.begin(), steps_.end(), [](const Step& step) { return step.omitted; }));
+}
+
+std::string FollowedGuide::failures() const {
   std::string all;
-  for (const Followed& one : commands_) {
-    const bool mayFail = std::any_of(expected.begin(), expected.end(), [&](const std::string& part) {
-      return one.command.find(part) != std::string::npos;
-    });
-    if (one.result.exitCode != 0 && !mayFail)
-      all += one.command + "\n" + one.result.output + one.result.errors + "\n";
-  }
+  for (const Step& step : steps_)
+    if (const std::string bad = unheld(step, folder()); !bad.empty()) {
+      for (const std::string& one : splitAt(bad.substr(0, bad.size() - 1), "\n"))
+        all += name_ + ":" + one + "\n";
+      all += step.command + "\n" + step.result.output + step.result.errors + "\n";
+    }
   return all;
 }
 

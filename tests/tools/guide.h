@@ -49,11 +49,34 @@ struct Reduction {
 const std::vector<Reduction>& reductions();
 std::string reduced(std::string command);
 
-/// A command as it stands in the guide, and what it said.
-struct Followed {
+/// A comment of a guide, `<!-- checked: VERB ... -->`, that says what the last command before it has done;
+/// with `checked [PART]` the last one that contains PART. The sentences around it may change:
+///   runs COMMAND         is a command that readers do not see, in its place among the others
+///   prints A ; B         it wrote a match of each of these regular expressions, to either stream
+///   lacks A ; B          it wrote none of these
+///   ends with A          the last line that it printed matches
+///   exits 1              in place of 0; `exits 1 if it prints A`: where it does, else 0
+///   writes FILE FILE     files and folders of the tree that are there at the end, not empty; `writes no
+///   FILE` layers FILE A B      the layers that an EXR has at least
+struct Mark {
+  int line = 0;
+  std::string verb, what;
+};
+
+/// A command of a guide, what it said, and the marks about it.
+struct Step {
+  int line = 0;
   std::string command;
+  std::vector<Mark> marks;
+  bool omitted = false;
   CommandResult result;
 };
+/// The commands of a guide with their marks. A mark that is none fails the test.
+std::vector<Step> stepsOf(const std::string& markdown);
+
+/// Which marks of a step do not hold in a folder, a line each: empty if all do. Without a mark `exits` the
+/// step must have ended with 0.
+std::string unheld(const Step& step, const std::filesystem::path& folder);
 
 /// A guide whose commands have been run in a copy of the tree without build/, by a shell of its own, reduced
 /// by the rules above. ./run, ./test and the set-up are the tree's own; ninja, cmake and ctest only say how
@@ -70,26 +93,22 @@ class FollowedGuide {
   const CommandResult& of(const std::string& part) const;
   /// One more command in the same folder, with the same programs.
   CommandResult run(const std::string& command) const;
-  /// Whether the sentence still stands in the guide, whatever its line breaks: what follows holds it against
-  /// what happened.
-  bool says(const std::string& sentence) const;
   bool has(const std::string& file) const;
   std::filesystem::path file(const std::string& name) const { return folder() / name; }
   std::filesystem::path folder() const { return home_.path() / "tree"; }
-  std::size_t omitted() const { return omitted_; }
-  /// The commands that ended badly, but for those that contain one of `expected`.
-  std::string failures(const std::vector<std::string>& expected = {}) const;
+  std::size_t omitted() const;
+  /// The commands that ended badly and the marks that do not hold, each with its line and what it printed.
+  std::string failures() const;
   /// What git would show as new or changed; empty also where there is no git.
   std::string leftovers() const;
 
  private:
-  void follow(const std::vector<std::string>& commands);
+  void follow();
   std::string environment() const;
 
   TemporaryDirectory home_;
-  std::string text_, path_;
-  std::vector<Followed> commands_;
-  std::size_t omitted_ = 0;
+  std::string name_, path_;
+  std::vector<Step> steps_;
 };
 
 }  // namespace lumivox::test

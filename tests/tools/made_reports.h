@@ -125,11 +125,19 @@ inline ReportRecord reportWithVoxels() {
   return record;
 }
 
+/// A page that draws itself without a problem.
+inline nlohmann::json drawnWell(const std::filesystem::path& file) {
+  nlohmann::json page = drawnPage(file);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  return page;
+}
+
 /// Writes a report's page and draws it.
 inline nlohmann::json drawn(const ReportRecord& record, const TemporaryDirectory& place) {
   const ReportFiles files = reportFiles(place.path() / "page.html");
   writeReport(files, record);
-  return drawnPage(files.page);
+  return drawnWell(files.page);
 }
 
 }  // namespace lumivox::test

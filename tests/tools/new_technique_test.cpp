@@ -26,9 +26,7 @@ std::set<std::string> filesBelow(const fs::path& folder) {
 
 TEST_CASE("a new technique has one of each part, under its name, in a project of its own") {
   const TemporaryDirectory work;
-  const CommandResult made = runCommand("lumivox new technique glow --in '" + work.path().string() + "/lab'");
-  INFO(made.errors);
-  REQUIRE(made.exitCode == 0);
+  const CommandResult made = ran("new technique glow --in", work.path() / "lab");
   const std::set<std::string> files = filesBelow(work.path() / "lab");
   for (const char* file :
        {"CMakeLists.txt", "techniques/glow/CMakeLists.txt", "techniques/glow/glow.cpp",
@@ -42,9 +40,7 @@ TEST_CASE("a new technique has one of each part, under its name, in a project of
     CHECK(contains(made.output, file));
     CHECK_FALSE(contains(readFile(work.path() / "lab" / file), "technique_name"));
   }
-  CHECK(runCommand("lumivox fmt --check '" + (work.path() / "lab/scenes/pipelines/glow.pipeline").string() +
-                   "'")
-            .exitCode == 0);
+  CHECK(typed("fmt --check", work.path() / "lab/scenes/pipelines/glow.pipeline").exitCode == 0);
   // A program in a build folder is installed first: find_package would reject the folder itself.
   const std::string build = binaryDirectory().string(), prefix = build + "/installed";
   CHECK(contains(made.output,
@@ -52,52 +48,48 @@ TEST_CASE("a new technique has one of each part, under its name, in a project of
   CHECK(contains(made.output, "-DCMAKE_PREFIX_PATH=" + prefix + " "));
   // A second one goes beside it and leaves the project as it is.
   const std::string project = readFile(work.path() / "lab/CMakeLists.txt");
-  CHECK(runCommand("cd '" + work.path().string() + "/lab/techniques' && '" +
-                   (binaryDirectory() / "bin/lumivox").string() + "' new technique shine")
-            .exitCode == 0);
+  ran(in(work.path() / "lab/techniques"), "new technique shine");
   CHECK(fs::exists(work.path() / "lab/techniques/shine/shine.cpp"));
   CHECK(readFile(work.path() / "lab/CMakeLists.txt") == project);
 }
 
 TEST_CASE("without a project around the working folder a new technique makes one of its own name") {
   const TemporaryDirectory work;
-  REQUIRE(runCommand("cd '" + work.path().string() + "' && '" + (binaryDirectory() / "bin/lumivox").string() +
-                     "' new technique glow")
-              .exitCode == 0);
+  ran(in(work.path()), "new technique glow");
   CHECK(fs::exists(work.path() / "glow/techniques/glow/glow.cpp"));
 }
 
 TEST_CASE("names that are no C++ namespace, no folder or taken are refused, and nothing is written") {
   const TemporaryDirectory work;
-  const std::string in = " --in '" + work.path().string() + "/lab'";
-  for (const char* name : {"''", "Glow", "2d", "_glow", "glow_", "a__b", "a-b", "../up", "a/b", "ns::a",
+  const auto made = [&](const std::string& name) {
+    return typed("new technique", name, "--in", work.path() / "lab");
+  };
+  for (const char* name : {"", "Glow", "2d", "_glow", "glow_", "a__b", "a-b", "../up", "a/b", "ns::a",
                            "class", "new", "common", "device", "shaders"}) {
     INFO(name);
-    checkRefused(runCommand(std::string("lumivox new technique ") + name + in), "my_paper");
+    checkRefused(made(name), "my_paper");
   }
-  checkRefused(runCommand("lumivox new technique " + std::string(65, 'a') + in), "at most 64");
-  checkRefused(runCommand("lumivox new technique direct_lighting" + in), "already");
+  checkRefused(made(std::string(65, 'a')), 64);
+  checkRefused(made("direct_lighting"), "direct_lighting", "already");
   CHECK(filesBelow(work.path()).empty());
 }
 
 TEST_CASE("a folder that is no project, and a technique that exists, are refused and left as they were") {
   const TemporaryDirectory work;
   work.write("notes/today.txt", "mine");
-  checkRefused(runCommand("lumivox new technique glow --in '" + work.path().string() + "/notes'"), "notes");
+  checkRefused(typed("new technique glow --in", work.path() / "notes"), "notes");
   CHECK(filesBelow(work.path()) == std::set<std::string>{"notes/today.txt"});
 
-  const std::string in = "lumivox new technique glow --in '" + work.path().string() + "/lab'";
-  REQUIRE(runCommand(in).exitCode == 0);
+  ran("new technique glow --in", work.path() / "lab");
   const std::set<std::string> before = filesBelow(work.path());
   writeFileAtomically(work.path() / "lab/techniques/glow/glow.cpp", "mine");
-  checkRefused(runCommand(in), "techniques/glow");
+  checkRefused(typed("new technique glow --in", work.path() / "lab"), "techniques/glow");
   CHECK(readFile(work.path() / "lab/techniques/glow/glow.cpp") == "mine");
   CHECK(filesBelow(work.path()) == before);
 
   // One of its files alone is enough to refuse it.
   work.write("lab/scenes/pipelines/shine.pipeline", "mine");
-  checkRefused(runCommand("lumivox new technique shine --in '" + work.path().string() + "/lab'"),
-               "shine.pipeline");
+  checkRefused(typed("new technique shine --in", work.path() / "lab"), "shine.pipeline");
   CHECK_FALSE(fs::exists(work.path() / "lab/techniques/shine"));
 }
 
@@ -141,8 +133,7 @@ TEST_CASE("data of an installed program is in share/lumivox of its prefix, that 
 }
 
 TEST_CASE("the manual page has every command with its options, and troff takes it") {
-  const CommandResult page = runCommand("lumivox --print-man");
-  REQUIRE(page.exitCode == 0);
+  const CommandResult page = ran("--print-man");
   for (const char* part :
        {".TH LUMIVOX 1", ".SH NAME\nlumivox \\- ", ".SS lumivox render\n", ".SS lumivox results list\n",
         "\\fB\\-\\-keep\\-everything\\fR", ".SH EXIT STATUS"}) {
@@ -158,8 +149,7 @@ TEST_CASE("the manual page has every command with its options, and troff takes i
 }
 
 TEST_CASE("bash completes commands, options and the words that an option takes") {
-  const CommandResult script = runCommand("lumivox --print-completion bash");
-  REQUIRE(script.exitCode == 0);
+  const CommandResult script = ran("--print-completion bash");
   const TemporaryDirectory work;
   const std::string file = work.write("completion", script.output).string();
   const auto completed = [&](const std::string& words, int at) {
@@ -171,21 +161,22 @@ TEST_CASE("bash completes commands, options and the words that an option takes")
     CHECK(result.errors.empty());
     return result.output;
   };
-  CHECK(completed("lumivox ren", 1) == "render\n");
-  CHECK(completed("lumivox new t", 2) == "technique\n");
-  CHECK(completed("lumivox render --keep", 2) == "--keep-everything\n");
-  CHECK(completed("lumivox render --arith", 2) == "--arithmetic\n");  // of every command
-  CHECK(completed("lumivox render --arithmetic e", 3) == "exact\n");
-  CHECK(completed("lumivox --print-completion z", 2) == "zsh\n");
-  CHECK(completed("lumivox render scenes/co", 2) == "\n");  // left to the shell, which completes files
+  for (const auto& [words, at, offered] :
+       {std::tuple("lumivox ren", 1, "render"),
+        {"lumivox new t", 2, "technique"},
+        {"lumivox render --keep", 2, "--keep-everything"},
+        {"lumivox render --arith", 2, "--arithmetic"},  // of all
+        {"lumivox render --arithmetic e", 3, "exact"},
+        {"lumivox --print-completion z", 2, "zsh"},
+        {"lumivox render scenes/co", 2, ""}})  // left to the shell, which completes files
+    CHECK(completed(words, at) == std::string(offered) + "\n");
 }
 
 TEST_CASE("zsh takes its completion, and completes commands and options by it") {
-  const CommandResult script = runCommand("lumivox --print-completion zsh");
-  REQUIRE(script.exitCode == 0);
+  const CommandResult script = ran("--print-completion zsh");
   CHECK(script.output.rfind("#compdef lumivox\n", 0) == 0);
   CHECK(contains(script.output, "'--keep-everything:"));
-  checkRefused(runCommand("lumivox --print-completion tcsh"), "tcsh");
+  checkRefused(typed("--print-completion tcsh"), "tcsh");
   if (runCommand("command -v zsh").exitCode != 0) return skip("zsh is not installed");
   const TemporaryDirectory work;
   const std::string file = work.write("_lumivox", script.output).string();
@@ -213,8 +204,7 @@ TEST_CASE("zsh takes its completion, and completes commands and options by it") 
 }
 
 TEST_CASE("fish takes its completion, and completes commands, options and words by it") {
-  const CommandResult script = runCommand("lumivox --print-completion fish");
-  REQUIRE(script.exitCode == 0);
+  const CommandResult script = ran("--print-completion fish");
   CHECK(contains(script.output, "complete -c lumivox -n '__lumivox_at render' -l keep-everything"));
   CHECK(contains(script.output, "complete -c lumivox -l arithmetic -x -a 'exact fast'"));
   if (runCommand("command -v fish").exitCode != 0) return skip("fish is not installed");

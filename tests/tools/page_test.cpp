@@ -109,14 +109,12 @@ TEST_CASE(
   if (lacksBrowser()) return;
   const Workplace place;
   place.write("direct.pipeline", kDirect);
-  const std::string scene = (sourceDirectory() / "scenes/cornell_glossy.scene").string();
-  const CommandResult made = runCommand(
-      "lumivox report '" + place.scene() + "' '" + scene + "' --pipeline '" + place.file("direct.pipeline") +
-      "' '" + committedPipeline("voxel_cone_tracing") +
-      "' -q --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 --voxels 4 -o '" +
-      place.file("page.html") + "'");
-  INFO(made.errors);
-  REQUIRE(made.exitCode == 0);
+  const auto report = [&](const char* name, const auto&... words) {
+    ran("report", place.scene(), words..., committedPipeline("voxel_cone_tracing"),
+        "-q --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 -o", place / name);
+  };
+  report("page.html", sourceDirectory() / "scenes/cornell_glossy.scene", "--voxels 4 --pipeline",
+         place / "direct.pipeline");
   Browser browser;
   const PageFindings page = checkPage(browser, place.file("page.html"));
   INFO(page.text());
@@ -151,12 +149,7 @@ TEST_CASE(
   CHECK(blank.hasProblem("it is blank"));
 
   // A brief page passes the same check.
-  const CommandResult brief = runCommand(
-      "lumivox report '" + place.scene() + "' --pipeline '" + committedPipeline("voxel_cone_tracing") +
-      "' -q --brief --no-sweep --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 -o '" +
-      place.file("brief.html") + "'");
-  INFO(brief.errors);
-  REQUIRE(brief.exitCode == 0);
+  report("brief.html", "--brief --no-sweep --pipeline");
   const PageFindings small = checkPage(browser, place.file("brief.html"));
   INFO(small.text());
   CHECK(small.problems.empty());
@@ -167,11 +160,7 @@ TEST_CASE(
 TEST_CASE("the page of the voxelizers draws all plots and needs no network") {
   if (lacksBrowser()) return;
   const Workplace place;
-  const CommandResult made =
-      runCommand("lumivox voxels '" + place.scene() + "' -q --resolution 4,8 --repeats 1 --scaling -o '" +
-                 place.file("voxels") + "'");
-  INFO(made.errors);
-  REQUIRE(made.exitCode == 0);
+  ran("voxels", place.scene(), "-q --resolution 4,8 --repeats 1 --scaling -o", place / "voxels");
   Browser browser;
   const PageFindings page = checkPage(browser, place.file("voxels/index.html"));
   INFO(page.text());

@@ -161,16 +161,15 @@ std::vector<std::filesystem::path> wellKnownScenes() {
 
 }  // namespace
 
-TEST_CASE("leaving out passes and variants gives the bit-identical image on every scene made here, part 1") {
-  REQUIRE(scenes(true).size() >= 6);
-  checkPart(scenes(true), 1, 3, checkSameImage);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on every scene made here, part 2") {
-  checkPart(scenes(true), 2, 3, checkSameImage);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on every scene made here, part 3") {
-  checkPart(scenes(true), 3, 3, checkSameImage);
-}
+// Parts are cases of their own, which processes share between them.
+#define MADE_HERE(part)                                                                                   \
+  TEST_CASE("leaving out passes and variants gives the bit-identical image on scenes made here " #part) { \
+    REQUIRE(scenes(true).size() >= 6);                                                                    \
+    checkPart(scenes(true), part, 3, checkSameImage);                                                     \
+  }
+MADE_HERE(1)
+MADE_HERE(2)
+MADE_HERE(3)
 
 namespace {
 
@@ -191,54 +190,26 @@ void checkWellKnown(std::size_t part) {
 
 }  // namespace
 
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 1") {
-  checkWellKnown(1);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 2") {
-  checkWellKnown(2);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 3") {
-  checkWellKnown(3);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 4") {
-  checkWellKnown(4);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 5") {
-  checkWellKnown(5);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 6") {
-  checkWellKnown(6);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 7") {
-  checkWellKnown(7);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 8") {
-  checkWellKnown(8);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 9") {
-  checkWellKnown(9);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 10") {
-  checkWellKnown(10);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 11") {
-  checkWellKnown(11);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 12") {
-  checkWellKnown(12);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 13") {
-  checkWellKnown(13);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 14") {
-  checkWellKnown(14);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 15") {
-  checkWellKnown(15);
-}
-TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models, part 16") {
-  checkWellKnown(16);
-}
+#define WELL_KNOWN(part)                                                                                   \
+  TEST_CASE("leaving out passes and variants gives the bit-identical image on well-known models " #part) { \
+    checkWellKnown(part);                                                                                  \
+  }
+WELL_KNOWN(1)
+WELL_KNOWN(2)
+WELL_KNOWN(3)
+WELL_KNOWN(4)
+WELL_KNOWN(5)
+WELL_KNOWN(6)
+WELL_KNOWN(7)
+WELL_KNOWN(8)
+WELL_KNOWN(9)
+WELL_KNOWN(10)
+WELL_KNOWN(11)
+WELL_KNOWN(12)
+WELL_KNOWN(13)
+WELL_KNOWN(14)
+WELL_KNOWN(15)
+WELL_KNOWN(16)
 
 namespace {
 

@@ -8,9 +8,10 @@
 #include <thread>
 
 #include "lumivox/base/file.h"
-#include "support/support.h"
+#include "tools/cli_support.h"
 
 using namespace lumivox;
+using test::contains;
 namespace fs = std::filesystem;
 
 namespace {
@@ -58,7 +59,7 @@ TEST_CASE(
   const auto result = machine.call("lumivox_set_up");
   CHECK(result.exitCode == 1);
   CHECK(result.output.empty());
-  CHECK(result.errors.find("could not be installed: beta") != std::string::npos);
+  CHECK(contains(result.errors, "could not be installed: beta"));
   CHECK(result.errors.find("alpha") == std::string::npos);
   CHECK_FALSE(fs::exists(machine.project() / "build/.packages-ok"));
 }
@@ -72,7 +73,7 @@ TEST_CASE(
   REQUIRE(machine.call("lumivox_ensure_packages").exitCode == 0);
   const std::string log = readFile(calls);
   CHECK(log.find("noninteractive") == 0);
-  CHECK(log.find("install -y --no-install-recommends beta\n") != std::string::npos);
+  CHECK(contains(log, "install -y --no-install-recommends beta\n"));
 
   // Now nothing is looked up: a broken dpkg-query goes unnoticed ...
   machine.program("dpkg-query", "exit 1");
@@ -83,7 +84,7 @@ TEST_CASE(
   // ... until the list is another.
   writeFileAtomically(machine.project() / "cmake/packages.txt", "gamma\n");
   CHECK(machine.call("lumivox_ensure_packages").exitCode == 0);
-  CHECK(readFile(calls).find("gamma") != std::string::npos);
+  CHECK(contains(readFile(calls), "gamma"));
 }
 
 TEST_CASE("what is configured already is not configured again, and a copied build folder is") {
@@ -129,21 +130,20 @@ TEST_CASE("./run and ./test set up what they need and pass their arguments on; a
   const auto alone = run("run");
   INFO(alone.errors);
   CHECK(alone.output == "lumivox report scenes/cornell.scene --budget 60s\n");
-  CHECK(alone.errors.find("ninja laboratory\n") != std::string::npos);
+  CHECK(contains(alone.errors, "ninja laboratory\n"));
   CHECK(run("run render 'a b' -o c").output == "lumivox render a b -o c\n");
   const auto exporter = run("run vdbexport --list a.vdb");
   CHECK(exporter.output == "vdbexport --list a.vdb\n");
-  CHECK(exporter.errors.find("ninja laboratory vdbexport\n") != std::string::npos);
+  CHECK(contains(exporter.errors, "ninja laboratory vdbexport\n"));
   const auto tests = run("test -R dsl");
   CHECK(tests.output.find("ctest --test-dir " + (project / "build").string()) == 0);
-  CHECK(tests.output.find(" -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n") != std::string::npos);
-  CHECK(run("test -R 'at spaces$'").output.find(" -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n") !=
-        std::string::npos);
+  CHECK(contains(tests.output, " -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n"));
+  CHECK(contains(run("test -R 'at spaces$'").output, " -R ^(dsl_lexer)( [0-9]+ of [0-9]+)?$\n"));
   const auto none = run("test -R absent");
   CHECK(none.exitCode == 1);
-  CHECK(none.errors.find("no case matches 'absent'") != std::string::npos);
-  CHECK(run("run view a.scene").errors.find("ninja laboratory lumivox_view\n") != std::string::npos);
-  CHECK(tests.errors.find("ninja all\n") != std::string::npos);
+  CHECK(contains(none.errors, "no case matches 'absent'"));
+  CHECK(contains(run("run view a.scene").errors, "ninja laboratory lumivox_view\n"));
+  CHECK(contains(tests.errors, "ninja all\n"));
 }
 
 namespace {
@@ -175,9 +175,9 @@ TEST_CASE("./test tells of cases: it names one that crashes, and runs what stand
   INFO(result.output << result.errors);
   CHECK(result.exitCode == 1);
   CHECK(readFile(project / "without") == "dsl_lexer: a\ndsl_lexer: b\n");
-  CHECK(result.output.find("crashed: dsl_lexer: b\n") != std::string::npos);
-  CHECK(result.output.find("skipped: dsl_lexer: c (no model)\n") != std::string::npos);
-  CHECK(result.output.find("3 cases: 1 passed, 1 failed, 1 skipped;") != std::string::npos);
+  CHECK(contains(result.output, "crashed: dsl_lexer: b\n"));
+  CHECK(contains(result.output, "skipped: dsl_lexer: c (no model)\n"));
+  CHECK(contains(result.output, "3 cases: 1 passed, 1 failed, 1 skipped;"));
 }
 
 TEST_CASE("a case of the next one: it does not end where that asks for it") {
@@ -195,7 +195,7 @@ TEST_CASE("a case that does not end is ended, and told by its name; what it set 
   std::string told;
   for (const auto& entry : fs::directory_iterator(events.path())) told += readFile(entry.path());
   CHECK(told.find("begin\tsetup: a case of the next one") == 0);
-  CHECK(told.find("end\ttime-out\t1\tsetup: a case of the next one") != std::string::npos);
+  CHECK(contains(told, "end\ttime-out\t1\tsetup: a case of the next one"));
   // All shares together are all cases, each once.
   std::multiset<std::string> shared, all;
   const auto listed = [&](const std::string& variables, std::multiset<std::string>& names) {

@@ -59,6 +59,16 @@ class Started {
   bool ended_ = false;
 };
 
+/// Waits until something holds, at most a minute, which is far more than any step of a test takes.
+template <class Condition>
+bool becomes(const Condition& condition) {
+  for (int i = 0; i < 3000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return false;
+}
+
 /// The little room, and pipelines of the technique that does what none may do: `fast` and `slow`, which rests
 /// in every frame, with a sweep of four points, and `tire`, which fails sooner or later.
 class Place : public Workplace {
@@ -84,6 +94,10 @@ class Place : public Workplace {
               values + "] }\n");
   }
   std::string quoted(const std::string& name) const { return "'" + file(name) + "'"; }
+  /// The only scene of a page's JSON.
+  nlohmann::json sceneOf(const std::string& json) const {
+    return nlohmann::json::parse(read(json)).at("scenes").at(0);
+  }
   static std::string techniques() { return (binaryDirectory() / "tests/plugins/hostile").string(); }
   /// The program with that technique.
   static std::string program() { return "lumivox --techniques '" + techniques() + "' "; }
@@ -107,22 +121,31 @@ class Place : public Workplace {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
+  /// A measuring command of the room, as little as can be, with that technique.
+  template <class... Words>
+  CommandResult measured(const Before& before, const char* command, const char* pipeline,
+                         const Words&... words) const {
+    return typed(before, "--techniques", techniques(), command, scene(), "--pipeline", file(pipeline),
+                 Raw{quick()}, words...);
+  }
+  /// Whether what a command says in a file comes to the work at a value.
+  bool comesTo(const std::string& value, const std::string& said = "said.txt") const {
+    return becomes([&] { return has(said) && contains(read(said), "value=" + value); });
+  }
+  /// Ends a command by a signal at the work at a value; its status as waitpid gives it.
+  int endedAt(const std::string& value, const std::vector<std::string>& words, int signal = SIGKILL) const {
+    std::filesystem::remove(path() / "said.txt");
+    Started command(words, file("said.txt"), value);
+    REQUIRE(comesTo(value));
+    command.signalAfter(std::chrono::milliseconds(0), signal);
+    return command.wait();
+  }
   CommandResult run(const std::string& command, const std::vector<std::string>& pipelines,
                     const std::vector<std::string>& more) const {
-    std::string line = "lumivox";
+    std::string line;
     for (const std::string& word : words(command, pipelines, more)) line += " '" + word + "'";
-    return runCommand(line);
+    return typed(Raw{line});
   }
 };
-
-/// Waits until something holds, at most a minute, which is far more than any step of a test takes.
-template <class Condition>
-bool becomes(const Condition& condition) {
-  for (int i = 0; i < 3000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
-}
 
 }  // namespace lumivox::test

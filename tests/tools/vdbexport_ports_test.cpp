@@ -203,17 +203,29 @@ Scene farScene() {
   return builder.scene;
 }
 
-Grids exportKinds(const fs::path& file, vdb::ExportRequest request, Scene scene) {
+/// What a file holds that is exported from a scene, by default far away; its bytes too where they are asked
+/// for.
+Grids exportKinds(const vdb::ExportRequest& request, const Scene& scene = farScene(),
+                  std::string* bytes = nullptr) {
   if (!content().radiance.radiance) makeContent();
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "kinds.vdb";
   OneTechnique source;
-  vdb::Exporter exporter(device(), source, scene, kindsPipeline(), {}, std::move(request));
+  vdb::Exporter exporter(device(), source, scene, kindsPipeline(), {}, request);
   openvdb::GridCPtrVec grids;
   openvdb::initialize();
   for (const vdb::NamedField& field : exporter.render(0.5, 12))
     grids.push_back(exporter.grid(field, {{"lumivox.scene_hash", "abc"}}));
   vdb::writeVdb(file, grids);
+  if (bytes != nullptr) *bytes = readFile(file);
   return readByOpenVdb(file);
 }
+
+/// Changes the content while it lives.
+struct Changed {
+  Changed() { makeContent(); }
+  ~Changed() { makeContent(); }
+};
 
 /// Every voxel of a grid, and a margin around it, against `expected(voxel)`: its value and whether it is
 /// active.
@@ -309,8 +321,7 @@ void checkPlace(const Grids& grids, const std::string& name, const glm::dvec3& l
 // ---- values and positions ------------------------------------------------------------------------------
 
 TEST_CASE("every value of every kind of port reads back from the file as the device has it") {
-  const TemporaryDirectory directory;
-  const Grids grids = exportKinds(directory.path() / "all.vdb", {{}, {}, false}, farScene());
+  const Grids grids = exportKinds({{}, {}, false});
   const Content& made = content();
 
   checkComponent(grids, "all.occupancy.opacity", made.occupancy.opacity, 0, 0);
@@ -347,9 +358,7 @@ TEST_CASE("every value of every kind of port reads back from the file as the dev
 }
 
 TEST_CASE("bits of stacks and fragments of a list read back as occupied voxels and their numbers") {
-  const TemporaryDirectory directory;
-  const Grids grids =
-      exportKinds(directory.path() / "bits.vdb", {{"all.binary", "all.fragments"}, {0}, false}, farScene());
+  const Grids grids = exportKinds({{"all.binary", "all.fragments"}, {0}, false});
   const Content& made = content();
 
   const auto words = made.binary.stacks->download(0);
@@ -381,9 +390,8 @@ TEST_CASE("bits of stacks and fragments of a list read back as occupied voxels a
 }
 
 TEST_CASE("a whole index is the centre of its voxel in metres of the world, far from its origin too") {
-  const TemporaryDirectory directory;
   const Scene scene = farScene();
-  const Grids grids = exportKinds(directory.path() / "all.vdb", {{}, {}, false}, scene);
+  const Grids grids = exportKinds({{}, {}, false}, scene);
   const Content& made = content();
   const glm::dvec3 origin = snapshotOf(scene, 0.0).origin;
   REQUIRE(glm::length(origin) > 1e6);
@@ -402,8 +410,7 @@ TEST_CASE("a whole index is the centre of its voxel in metres of the world, far 
 }
 
 TEST_CASE("what does not touch a surface costs nothing, and what is constant is one tile") {
-  const TemporaryDirectory directory;
-  makeContent();
+  const Changed changed;
   // 64 voxels a side: a block of 32 voxels of one value in the corner, one voxel apart, zero elsewhere.
   GridPlacement grid{{0, 0, 0}, 0.1f, {64, 64, 64}};
   std::vector<float> values(64 * 64 * 64, 0.0f);
@@ -415,20 +422,18 @@ TEST_CASE("what does not touch a surface costs nothing, and what is constant is 
       device(), gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::r8, 64, 64, 64, 1}, "opacity");
   texture->uploadFloats(0, values);
   content().occupancy = {grid, texture};
-  const Grids grids = exportKinds(directory.path() / "o.vdb", {{"all.occupancy"}, {0}, false}, farScene());
+  std::string bytes;
+  const Grids grids = exportKinds({{"all.occupancy"}, {0}, false}, farScene(), &bytes);
   const auto opacity = openvdb::gridPtrCast<openvdb::FloatGrid>(grids.at("all.occupancy.opacity"));
   CHECK(opacity->activeVoxelCount() == 32 * 32 * 32 + 1);
   CHECK(opacity->tree().leafCount() == 1);
   CHECK(opacity->tree().activeTileCount() == 4 * 4 * 4);
   CHECK(opacity->background() == 0.0f);
-  CHECK(fs::file_size(directory.path() / "o.vdb") < 64 * 64 * 64 / 16);
-  makeContent();
+  CHECK(bytes.size() < 64 * 64 * 64 / 16);
 }
 
 TEST_CASE("half floats keep what came from half floats to the bit, and round the rest to eleven bits") {
-  const TemporaryDirectory directory;
-  const vdb::ExportRequest request{{"all.attributes", "all.media"}, {0}, true};
-  const Grids grids = exportKinds(directory.path() / "half.vdb", request, farScene());
+  const Grids grids = exportKinds({{"all.attributes", "all.media"}, {0}, true});
   CHECK(grids.at("all.attributes.albedo")->saveFloatAsHalf());
   checkRgb(grids, "all.attributes.albedo", content().attributes.albedo, 0);
   const DeviceVolume density(content().media.media[0].density, 0);
@@ -440,8 +445,7 @@ TEST_CASE("half floats keep what came from half floats to the bit, and round the
 }
 
 TEST_CASE("a grid says what it is, its unit, who made it with which parameters, and from what") {
-  const TemporaryDirectory directory;
-  const Grids grids = exportKinds(directory.path() / "all.vdb", {{}, {0}, false}, farScene());
+  const Grids grids = exportKinds({{}, {0}, false});
   const openvdb::GridBase& radiance = *grids.at("all.radiance.radiance");
   for (const auto& [name, value] : std::map<std::string, std::string>{
            {"lumivox.technique", "toy.kinds"},
@@ -468,13 +472,11 @@ TEST_CASE("a grid says what it is, its unit, who made it with which parameters, 
 
 TEST_CASE(
     "coefficients of light say whether they are of flux or of radiance, and one volume is all three colours") {
-  const TemporaryDirectory directory;
-  makeContent();
+  const Changed changed;
   Content& made = content();
   for (const ShGrid::Quantity quantity : {ShGrid::Quantity::flux, ShGrid::Quantity::radiance}) {
     made.harmonics.quantity = quantity;
-    const Grids grids =
-        exportKinds(directory.path() / "light.vdb", {{"all.harmonics"}, {0}, false}, farScene());
+    const Grids grids = exportKinds({{"all.harmonics"}, {0}, false});
     REQUIRE(grids.count("all.harmonics.Y00") == 1);
     CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.coefficients_of") == name(quantity));
     CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.unit") ==
@@ -483,41 +485,34 @@ TEST_CASE(
   }
   // Whoever reads the file must know that most voxels were left out.
   made.harmonics.readFor = "'voxels six'";
-  CHECK(metaText(*exportKinds(directory.path() / "part.vdb", {{"all.harmonics"}, {0}, false}, farScene())
-                      .at("all.harmonics.Y00"),
-                 "lumivox.read_for") == "'voxels six'");
+  CHECK(metaText(*exportKinds({{"all.harmonics"}, {0}, false}).at("all.harmonics.Y00"), "lumivox.read_for") ==
+        "'voxels six'");
   made.harmonics.readFor.clear();
   made.harmonics.levels.resize(1);
   auto& coefficients = made.harmonics.levels[0].coefficients;
   coefficients[1] = coefficients[2] = nullptr;
-  const Grids grids = exportKinds(directory.path() / "one.vdb", {{"all.harmonics"}, {0}, false}, farScene());
+  const Grids grids = exportKinds({{"all.harmonics"}, {0}, false});
   const DeviceVolume volume(coefficients[0], 0);
   checkVoxels<openvdb::Vec3SGrid>(grids, "all.harmonics.Y10", volume.size(), [&](const glm::ivec3& voxel) {
     return std::pair(openvdb::Vec3f(volume.at(voxel, 2)), volume.any(voxel));
   });
-  makeContent();
 }
 
 TEST_CASE("the only density of a medium is called as viewers expect it") {
-  const TemporaryDirectory directory;
-  makeContent();
+  const Changed changed;
   content().media.media.pop_back();
-  const Grids grids = exportKinds(directory.path() / "smoke.vdb", {{"all.media"}, {0}, false}, farScene());
-  makeContent();
+  const Grids grids = exportKinds({{"all.media"}, {0}, false});
   REQUIRE(grids.size() == 1);
   CHECK(grids.begin()->first == "density");
   CHECK(grids.begin()->second->getGridClass() == openvdb::GRID_FOG_VOLUME);
 }
 
 TEST_CASE("the same grids give the same bytes") {
-  const TemporaryDirectory directory;
-  const auto bytes = [&] {
-    exportKinds(directory.path() / "a.vdb", {{"all.radiance", "all.binary"}, {}, false}, farScene());
-    return readFile(directory.path() / "a.vdb");
-  };
-  const std::string first = bytes();
+  std::string first, second;
+  exportKinds({{"all.radiance", "all.binary"}, {}, false}, farScene(), &first);
   sleep(1);  // OpenVDB's own tag is made from the clock's seconds
-  CHECK(first == bytes());
+  exportKinds({{"all.radiance", "all.binary"}, {}, false}, farScene(), &second);
+  CHECK(first == second);
 }
 
 // ---- other programs ------------------------------------------------------------------------------------
@@ -534,8 +529,10 @@ TEST_CASE("OpenVDB's viewer shows an exported grid", "[slow]") {
                       "'; code=$?; kill $server; wait $server 2>/dev/null; exit $code");
   };
   constexpr int kStopped = 124;
-  const fs::path control = directory.path() / "control.vdb", exported = directory.path() / "exported.vdb";
-  exportKinds(exported, {{"all.occupancy", "all.radiance"}, {0}, false}, farScene());
+  std::string bytes;
+  exportKinds({{"all.occupancy", "all.radiance"}, {0}, false}, farScene(), &bytes);
+  const fs::path control = directory.path() / "control.vdb",
+                 exported = directory.write("exported.vdb", bytes);
   {
     openvdb::io::File file(control.string());
     file.write(openvdb::GridCPtrVec{ramp(20, 0.25, 8.0)});
@@ -553,11 +550,11 @@ TEST_CASE("OpenVDB's viewer shows an exported grid", "[slow]") {
 TEST_CASE("Blender loads exported smoke as a volume with a density", "[slow]") {
   if (!hasProgram("blender")) return skip("blender is absent");
   const TemporaryDirectory directory;
-  const fs::path file = directory.path() / "smoke.vdb";
-  makeContent();
+  const Changed changed;
   content().media.media.pop_back();
-  exportKinds(file, {{"all.media"}, {0}, false}, farScene());
-  makeContent();
+  std::string bytes;
+  exportKinds({{"all.media"}, {0}, false}, farScene(), &bytes);
+  const fs::path file = directory.write("smoke.vdb", bytes);
   const fs::path script = directory.write(
       "load.py",
       "import bpy\nvolume = bpy.data.volumes.new('smoke')\nvolume.filepath = '" + file.string() +

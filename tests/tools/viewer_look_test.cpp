@@ -26,20 +26,14 @@ std::size_t marksOf(const Json& record, const std::string& panel, const std::str
 TEST_CASE("voxels of a port are shown in the window, with times of its frames and bytes of its ports") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(
-      place,
-      "reference off\n set { resolution 8 }\n wait frame\n record " + quotedFile(place, "first.json") +
-          "\n port \"voxels.fragments\"\n voxels occupancy\n work on\n wait frame\n record " +
-          quotedFile(place, "voxels.json") + "\n tone false_colour\n wait frame\n record " +
-          quotedFile(place, "false.json") + "\n voxels albedo\n wait problem\n record " +
-          quotedFile(place, "wrong.json") +
-          "\n port nothing\n work off\n wait mended\n frame \"all\"\n time 3\n loop 0.5 s\n play on\n play off\n wait "
-          "frame\n record " +
-          quotedFile(place, "framed.json") + "\n quit on",
-      committedPipeline("voxel_cone_tracing"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  const auto record = [&](const char* name) { return Json::parse(place.read(name)); };
+  showed(place,
+         "reference off\n set { resolution 8 }\n wait frame\n record 'first.json'\n"
+         " port \"voxels.fragments\"\n voxels occupancy\n work on\n wait frame\n record 'voxels.json'\n"
+         " tone false_colour\n wait frame\n record 'false.json'\n voxels albedo\n wait problem\n"
+         " record 'wrong.json'\n port nothing\n work off\n wait mended\n frame \"all\"\n time 3\n"
+         " loop 0.5 s\n play on\n play off\n wait frame\n record 'framed.json'\n quit on",
+         committedPipeline("voxel_cone_tracing"));
+  const auto record = [&](const char* name) { return recordOf(place, name); };
   const Json first = record("first.json"), voxels = record("voxels.json");
   CHECK(contains(rowOf(first, "time", "frame"), " ms, "));
   CHECK(contains(rowOf(first, "time", "first_picture"), " s after the start"));
@@ -63,17 +57,14 @@ TEST_CASE("voxels of a port are shown in the window, with times of its frames an
 TEST_CASE("a pixel that is no number is counted, and flashes as long as it is there") {
   if (!canShowWindows()) return;
   const Place place;
-  place.write(
-      "nan.pipeline",
-      "pipeline \"No number\" {\n  pass paint hostile.paint { deed nan }\n\n  output direct paint.radiance\n}\n");
-  place.write("script.view", "view \"a test\" {\n reference off\n wait frame\n record " +
-                                 quotedFile(place, "nan.json") + "\n quit on\n}\n");
-  const CommandResult done = runCommand(windowCommand(
-      "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" + place.file("nan.pipeline") +
-      "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  CHECK(rowOf(Json::parse(place.read("nan.json")), "look", "bad_pixels") == "1");
+  place.write("nan.pipeline",
+              "pipeline \"No number\" {\n  pass paint hostile.paint { deed nan }\n\n"
+              "  output direct paint.radiance\n}\n");
+  showedWhile(place,
+              "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" +
+                  place.file("nan.pipeline") + "' --resolution 8x8",
+              "reference off\n wait frame\n record 'nan.json'\n quit on", {});
+  CHECK(rowOf(recordOf(place, "nan.json"), "look", "bad_pixels") == "1");
 }
 
 TEST_CASE("a grid that is shown is exported, and a point is measured into a store as sweeps do") {
@@ -81,16 +72,14 @@ TEST_CASE("a grid that is shown is exported, and a point is measured into a stor
   const Workplace place;
   const CommandResult done = shown(
       place,
-      "reference off\n samples 4\n set { resolution 8 }\n port \"grid.mips\"\n level 1\n move 0 0 -0.1\n "
-      "export_grid " +
-          quotedFile(place, "grid.vdb") + "\n wait kept\n record " + quotedFile(place, "exported.json") +
-          "\n camera main\n add_point " + quotedFile(place, "points.sqlite") + "\n wait kept\n export_grid " +
-          quotedFile(place, "grid.obj") + "\n quit on",
+      "reference off\n samples 4\n set { resolution 8 }\n port \"grid.mips\"\n level 1\n move 0 0 -0.1\n"
+      " export_grid 'grid.vdb'\n wait kept\n record 'exported.json'\n camera main\n"
+      " add_point 'points.sqlite'\n wait kept\n export_grid 'grid.obj'\n quit on",
       committedPipeline("voxel_cone_tracing"), "--resolution 8x8");
   INFO(done.errors);
   CHECK(done.exitCode != 0);  // by the last statement alone
   CHECK(contains(done.errors, "grid.obj': expected a name that ends in .vdb"));
-  CHECK(contains(Json::parse(place.read("exported.json")).at("message"), "grid.vdb written"));
+  CHECK(contains(recordOf(place, "exported.json").at("message"), "grid.vdb written"));
   const CommandResult listed = runCommand("'" + (binaryDirectory() / "bin/vdbexport").string() +
                                           "' --list '" + place.file("grid.vdb") + "'");
   INFO(listed.errors << listed.output);
@@ -122,15 +111,11 @@ TEST_CASE("a program that is stopped ends, and voxels lie over what is behind th
 TEST_CASE("the window judges by FLIP first, and says in words which number there is none of") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(
-      place,
-      "wait frame\n wait reference 8\n wait judged\n wait frame\n record " + quotedFile(place, "lit.json") +
-          "\n off \"light bulb\"\n wait frame\n wait reference 8\n wait judged\n record " +
-          quotedFile(place, "dark.json") + "\n quit on",
-      committedPipeline("reflective_shadow_maps"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  const Json lit = Json::parse(place.read("lit.json")), dark = Json::parse(place.read("dark.json"));
+  showed(place,
+         "wait frame\n wait reference 8\n wait judged\n wait frame\n record 'lit.json'\n"
+         " off \"light bulb\"\n wait frame\n wait reference 8\n wait judged\n record 'dark.json'\n quit on",
+         committedPipeline("reflective_shadow_maps"));
+  const Json lit = recordOf(place, "lit.json"), dark = recordOf(place, "dark.json");
   std::vector<std::string> order;
   Json chart;
   for (const Json& row : lit.at("panels").at("judge")) {

@@ -14,24 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a script's window does in the background of a test.
-class Beside {
- public:
-  explicit Beside(std::string command)
-      : thread_([this, command = std::move(command)] { result_ = runCommand(command); }) {}
-  ~Beside() {
-    if (thread_.joinable()) thread_.join();
-  }
-  const CommandResult& result() {
-    if (thread_.joinable()) thread_.join();
-    return result_;
-  }
-
- private:
-  CommandResult result_;
-  std::thread thread_;
-};
-
 /// Width and height, from the header of the file.
 std::pair<int, int> sizeOfPng(const std::string& bytes) {
   const auto number = [&](std::size_t at) {
@@ -47,17 +29,13 @@ std::pair<int, int> sizeOfPng(const std::string& bytes) {
 TEST_CASE("a window of any size, put away and brought back, and on a monitor of another density goes on") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(
-      place,
-      "window 1 1\n wait frame\n move 0.1 0 0\n wait frame\n window 4096 200\n wait frame\n minimise on\n"
-      "move 0 0.1 0\n wait frame\n minimise off\n window 800 600\n scale 2.5\n shot " +
-          quotedFile(place, "dense.png") + "\n scale 1\n shot " + quotedFile(place, "plain.png") +
-          "\n panels off\n shot " + quotedFile(place, "alone.png") + "\n panels on\n record " +
-          quotedFile(place, "record.json") + "\n quit on",
-      committedPipeline("direct_lighting"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  const Json record = Json::parse(place.read("record.json"));
+  showed(place,
+         "window 1 1\n wait frame\n move 0.1 0 0\n wait frame\n window 4096 200\n wait frame\n minimise on\n"
+         "move 0 0.1 0\n wait frame\n minimise off\n window 800 600\n scale 2.5\n shot 'dense.png'\n"
+         " scale 1\n shot 'plain.png'\n panels off\n shot 'alone.png'\n panels on\n record 'record.json'\n"
+         " quit on",
+         committedPipeline("direct_lighting"));
+  const Json record = recordOf(place, "record.json");
   CHECK(record.at("problem") == "");
   CHECK(record.at("settled") == true);
   const std::string dense = place.read("dense.png"), plain = place.read("plain.png");
@@ -69,18 +47,12 @@ TEST_CASE("a window of any size, put away and brought back, and on a monitor of 
 TEST_CASE("the keyboard reaches picture, panels and controls") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place,
-            "wait frame\n key \"[\"\n key \"]\"\n key \"H\"\n key \"H\"\n key \"?\"\n key \"?\"\n"
-            "key \"3\"\n key \"down\"\n key \"press\"\n record " +
-                quotedFile(place, "pressed.json") +
-                "\n key \"F6\"\n key \"right\"\n key \"W\"\n wait frame\n record " +
-                quotedFile(place, "turned.json") + "\n quit on",
-            committedPipeline("direct_lighting"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  const Json pressed = Json::parse(place.read("pressed.json")),
-             turned = Json::parse(place.read("turned.json"));
+  showed(place,
+         "wait frame\n key \"[\"\n key \"]\"\n key \"H\"\n key \"H\"\n key \"?\"\n key \"?\"\nkey \"3\"\n"
+         " key \"down\"\n key \"press\"\n record 'pressed.json'\n key \"F6\"\n key \"right\"\n key \"W\"\n"
+         " wait frame\n record 'turned.json'\n quit on",
+         committedPipeline("direct_lighting"));
+  const Json pressed = recordOf(place, "pressed.json"), turned = recordOf(place, "turned.json");
   CHECK(rowOf(pressed, "time", "times") == "off");
   CHECK(rowOf(pressed, "look", "camera") == "main");
   CHECK(rowOf(turned, "look", "camera") == "free");
@@ -94,34 +66,26 @@ TEST_CASE("the layout of a window is that of the last one, and a broken layout i
   const Workplace place;
   const std::string layout = "--resolution 8x8 --layout '" + place.file("state/layout.view") + "'";
   const std::string pipeline = committedPipeline("direct_lighting");
-  const CommandResult first =
-      shown(place, "window 700 500\n panel time\n panel_width 300\n wait frame\n quit on", pipeline, layout);
-  INFO(first.errors);
-  REQUIRE(first.exitCode == 0);
+  showed(place, "window 700 500\n panel time\n panel_width 300\n wait frame\n quit on", pipeline, layout);
   const std::string kept = place.read("state/layout.view");
   CHECK(contains(kept, "window 700 500"));
   CHECK(contains(kept, "panel time"));
   CHECK(contains(kept, "panel_width 300"));
-  const CommandResult second =
-      shown(place, "wait frame\n shot " + quotedFile(place, "second.png") + "\n quit on", pipeline, layout);
+  const CommandResult second = shown(place, "wait frame\n shot 'second.png'\n quit on", pipeline, layout);
   REQUIRE(second.exitCode == 0);
   CHECK(sizeOfPng(place.read("second.png")) == std::pair(700, 500));
   CHECK(place.read("state/layout.view") == kept);
   place.write("state/layout.view", "view \"layout\" {\n  widnow 700 500\n}\n");
-  const CommandResult third =
-      shown(place, "record " + quotedFile(place, "third.json") + "\n quit on", pipeline, layout);
-  INFO(third.errors);
-  CHECK(third.exitCode == 0);
-  CHECK(contains(Json::parse(place.read("third.json")).at("message"), "widnow"));
+  const CommandResult third = showed(place, "record 'third.json'\n quit on", pipeline, layout);
+  CHECK(contains(recordOf(place, "third.json").at("message"), "widnow"));
 }
 
 TEST_CASE("a window that is closed while a reference is traced ends within a second") {
   if (!canShowWindows()) return;
   const Workplace place;
   // A round of 64 samples of this image takes longer than that on a busy machine.
-  const CommandResult done = shown(
-      place, "samples 1048576\n wait reference 2\n record " + quotedFile(place, "last.json") + "\n quit on",
-      committedPipeline("direct_lighting"), "--resolution 256x256");
+  const CommandResult done = shown(place, "samples 1048576\n wait reference 2\n record 'last.json'\n quit on",
+                                   committedPipeline("direct_lighting"), "--resolution 256x256");
   const auto ended = std::chrono::system_clock::now();
   INFO(done.errors);
   REQUIRE(done.exitCode == 0);
@@ -135,23 +99,15 @@ TEST_CASE("a window that is closed while a reference is traced ends within a sec
 TEST_CASE("a scene that is deleted while it is shown is told, and comes back with its file") {
   if (!canShowWindows()) return;
   const Workplace place;
-  place.write("script.view", "view \"a test\" {\n wait frame\n record " + quotedFile(place, "first.json") +
-                                 "\n wait problem\n move 0.1 0 0\n record " + quotedFile(place, "gone.json") +
-                                 "\n wait mended\n wait frame\n record " + quotedFile(place, "back.json") +
-                                 "\n quit on\n}\n");
-  Beside window(windowCommand("'" + place.scene() + "' '" + committedPipeline("direct_lighting") +
-                              "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  const bool first = becomes([&] { return place.has("first.json"); });
   const std::string text = place.read("room.scene");
-  fs::remove(place.file("room.scene"));
-  const bool gone = becomes([&] { return place.has("gone.json"); });
-  place.write("room.scene", text);
-  INFO(window.result().errors);
-  REQUIRE(first);
-  REQUIRE(gone);
-  CHECK(window.result().exitCode == 0);
-  CHECK(contains(Json::parse(place.read("gone.json")).at("problem"), "room.scene"));
-  CHECK(Json::parse(place.read("back.json")).at("problem") == "");
+  showedWhile(place,
+              "'" + place.scene() + "' '" + committedPipeline("direct_lighting") + "' --resolution 8x8",
+              "wait frame\n record 'first.json'\n wait problem\n move 0.1 0 0\n record 'gone.json'\n"
+              " wait mended\n wait frame\n record 'back.json'\n quit on",
+              {{"first.json", [&] { fs::remove(place.file("room.scene")); }},
+               {"gone.json", [&] { place.write("room.scene", text); }}});
+  CHECK_THAT(recordOf(place, "gone.json").at("problem").get<std::string>(), Tells("room.scene"));
+  CHECK(recordOf(place, "back.json").at("problem") == "");
 }
 
 TEST_CASE("a technique that throws while it is loaded anew is told, and the one before it goes on") {
@@ -164,26 +120,19 @@ TEST_CASE("a technique that throws while it is loaded anew is told, and the one 
   fs::copy_file(good, library);
   place.write("paint.pipeline",
               "pipeline \"Paint\" {\n  pass paint hostile.paint { }\n\n  output direct paint.radiance\n}\n");
-  place.write("script.view", "view \"a test\" {\n wait frame\n record " + quotedFile(place, "first.json") +
-                                 "\n wait problem\n record " + quotedFile(place, "thrown.json") +
-                                 "\n wait mended\n wait frame\n save_image " + quotedFile(place, "back.exr") +
-                                 "\n quit on\n}\n");
-  Beside window(windowCommand("--techniques '" + place.file("techniques") + "' '" + place.scene() + "' '" +
-                              place.file("paint.pipeline") + "' --resolution 8x8 --script '" +
-                              place.file("script.view") + "'"));
   const auto swapIn = [&](const fs::path& from) {
-    fs::copy_file(from, place.path() / "new.so");
-    fs::rename(place.path() / "new.so", library);  // as a linker's output is put in place
+    return [&place, &library, from] {
+      fs::copy_file(from, place / "new.so");
+      fs::rename(place / "new.so", library);  // as a linker's output is put in place
+    };
   };
-  const bool first = becomes([&] { return place.has("first.json"); });
-  swapIn(bad);
-  const bool thrown = becomes([&] { return place.has("thrown.json"); });
-  swapIn(good);
-  INFO(window.result().errors);
-  REQUIRE(first);
-  REQUIRE(thrown);
-  CHECK(window.result().exitCode == 0);
-  CHECK(contains(Json::parse(place.read("thrown.json")).at("problem"), "the table of directions is missing"));
+  showedWhile(place,
+              "--techniques '" + place.file("techniques") + "' '" + place.scene() + "' '" +
+                  place.file("paint.pipeline") + "' --resolution 8x8",
+              "wait frame\n record 'first.json'\n wait problem\n record 'thrown.json'\n wait mended\n"
+              " wait frame\n save_image 'back.exr'\n quit on",
+              {{"first.json", swapIn(bad)}, {"thrown.json", swapIn(good)}});
+  CHECK_THAT(recordOf(place, "thrown.json").at("problem").get<std::string>(), Tells("table of directions"));
   CHECK(place.has("back.exr"));
 }
 

@@ -202,21 +202,17 @@ TEST_CASE("a parameter tells its range, its choices, its default and what was pu
 TEST_CASE("what is edited in the window is asked for before it overwrites a text, and the text repeats it") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const std::string before = place.read("room.scene"), scene = "\"" + place.scene() + "\"";
-  const CommandResult done = shown(
-      place,
-      "light \"bulb\" { power 2 1 0.5 }\n material \"room/grey\" { diffuse 0.3 0.6 0.2 }\n"
-      "camera \"main\" { eye 0.1 0 0.8 }\n wait frame\n save_image " +
-          quotedFile(place, "edited.exr") + "\n panel keep\n click \"keep/save_scene\"\n record " +
-          quotedFile(place, "asked.json") + "\n answer no\n record " + quotedFile(place, "refused.json") +
-          "\n save_scene " + scene + "\n click \"question/yes\"\n wait frame\n save_image " +
-          quotedFile(place, "after.exr") + "\n record " + quotedFile(place, "after.json") + "\n quit on",
-      committedPipeline("reflective_shadow_maps"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  CHECK(contains(Json::parse(place.read("asked.json")).at("question"), "Overwrite"));
-  CHECK(contains(Json::parse(place.read("refused.json")).at("message"), "stays as it was"));
-  const Json after = Json::parse(place.read("after.json"));
+  const std::string before = place.read("room.scene");
+  showed(place,
+         "light \"bulb\" { power 2 1 0.5 }\n material \"room/grey\" { diffuse 0.3 0.6 0.2 }\n"
+         "camera \"main\" { eye 0.1 0 0.8 }\n wait frame\n save_image 'edited.exr'\n panel keep\n"
+         " click \"keep/save_scene\"\n record 'asked.json'\n answer no\n record 'refused.json'\n"
+         " save_scene 'room.scene'\n click \"question/yes\"\n wait frame\n save_image 'after.exr'\n"
+         " record 'after.json'\n quit on",
+         committedPipeline("reflective_shadow_maps"));
+  CHECK(contains(recordOf(place, "asked.json").at("question"), "Overwrite"));
+  CHECK(contains(recordOf(place, "refused.json").at("message"), "stays as it was"));
+  const Json after = recordOf(place, "after.json");
   CHECK(after.at("question") == "");
   CHECK(after.at("problem") == "");
   for (const Json& row : after.at("panels").at("scene")) {
@@ -229,11 +225,8 @@ TEST_CASE("what is edited in the window is asked for before it overwrites a text
       CHECK(contains(row.value("tooltip", ""), "default "));
     }
   CHECK(place.read("room.scene") != before);
-  const CommandResult rendered =
-      runCommand("lumivox render '" + place.scene() + "' '" + committedPipeline("reflective_shadow_maps") +
-                 "' --resolution 24x16 -o '" + place.file("rendered.exr") + "'");
-  INFO(rendered.errors);
-  REQUIRE(rendered.exitCode == 0);
+  const CommandResult rendered = ran("render", place.scene(), committedPipeline("reflective_shadow_maps"),
+                                     "--resolution 24x16 -o", place.file("rendered.exr"));
   checkSamePixels(place.file("edited.exr"), place.file("rendered.exr"));
   checkSamePixels(place.file("edited.exr"), place.file("after.exr"));
 }

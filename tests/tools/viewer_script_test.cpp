@@ -112,11 +112,11 @@ TEST_CASE(
     }
   }
   place.write("good.view", script(good));
-  const CommandResult taken = runCommand("lumivox check '" + place.file("good.view") + "'");
+  const CommandResult taken = typed("check", place.file("good.view"));
   INFO(taken.errors);
   CHECK(taken.exitCode == 0);
   place.write("bad.view", script(bad));
-  const CommandResult checked = runCommand("lumivox check '" + place.file("bad.view") + "'");
+  const CommandResult checked = typed("check", place.file("bad.view"));
   CHECK(checked.exitCode == 2);
   for (std::size_t i = 0; i < bad.size(); ++i) {
     // Lines are counted from 1, and the first is that of the block.
@@ -208,9 +208,8 @@ TEST_CASE("a reference so bright that its variance is no number is told, and end
 TEST_CASE("a window is kept as the picture that its name says, and what goes wrong names the statement") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place, "wait frame\n shot " + quotedFile(place, "window.exr") + "\n quit on",
-            committedPipeline("direct_lighting"), "--resolution 8x8");
+  const CommandResult done = shown(place, "wait frame\n shot 'window.exr'\n quit on",
+                                   committedPipeline("direct_lighting"), "--resolution 8x8");
   INFO(done.errors);
   CHECK(done.exitCode == 2);
   CHECK(contains(unwrapped(done.errors), "script.view:3:2: shot"));

@@ -124,7 +124,7 @@ TEST_CASE(
   CHECK(contains(unwrapped(strict.errors), "refused under --strict"));
   CHECK_FALSE(contains(strict.errors, "there is no display"));
   // One list of options for both programs.
-  const std::string help = runCommand("lumivox view --help").output,
+  const std::string help = typed("view --help").output,
                     ofWindow =
                         runCommand("'" + (binaryDirectory() / "bin/lumivox-view").string() + "' --help")
                             .output;

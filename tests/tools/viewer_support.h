@@ -4,13 +4,17 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <string>
+#include <thread>
 
 #include "lumivox/base/image.h"
 #include "tools/cli_support.h"
 #include "tools/display.h"
+#include "tools/started.h"
 #include "viewer/session.h"
 
 namespace lumivox::test {
@@ -49,12 +53,54 @@ inline std::string windowCommand(const std::string& options) {
   return "'" + (binaryDirectory() / "bin/lumivox-view").string() + "' " + options;
 }
 
+inline std::string quotedFile(const Workplace& place, const std::string& name) {
+  return "\"" + place.file(name) + "\"";
+}
+
+/// A script whose files, in single quotes, lie in the workplace.
+inline std::string scriptOf(const Workplace& place, const std::string& script) {
+  static const std::regex file("'([^']*)'");
+  return std::regex_replace(script, file, "\"" + place.path().string() + "/$1\"");
+}
+
 /// The little room with a pipeline in a window, and what a script does there.
 inline CommandResult shown(const Workplace& place, const std::string& script, const std::string& pipeline,
                            const std::string& options = "--resolution 24x16") {
-  place.write("script.view", "view \"a test\" {\n" + script + "\n}\n");
+  place.write("script.view", "view \"a test\" {\n" + scriptOf(place, script) + "\n}\n");
   return runCommand(windowCommand("'" + place.scene() + "' '" + pipeline + "' " + options + " --script '" +
                                   place.file("script.view") + "'"));
+}
+/// The same of a script that must end well.
+inline CommandResult showed(const Workplace& place, const std::string& script, const std::string& pipeline,
+                            const std::string& options = "--resolution 24x16") {
+  CommandResult result = shown(place, script, pipeline, options);
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  return result;
+}
+
+/// A window with a script that goes on beside a test, and ends well. `texts` are its scene, pipelines and
+/// options; each action is done once the file before it is there.
+inline void showedWhile(const Workplace& place, const std::string& texts, const std::string& script,
+                        const std::vector<std::pair<const char*, std::function<void()>>>& actions) {
+  place.write("script.view", "view \"a test\" {\n" + scriptOf(place, script) + "\n}\n");
+  CommandResult done;
+  std::thread window(
+      [&] { done = runCommand(windowCommand(texts + " --script '" + place.file("script.view") + "'")); });
+  bool came = true;
+  for (const auto& [file, action] : actions) {
+    came = came && becomes([&, name = file] { return place.has(name); });
+    action();
+  }
+  window.join();
+  INFO(done.errors);
+  REQUIRE(came);
+  REQUIRE(done.exitCode == 0);
+}
+
+/// What `record` wrote.
+inline Json recordOf(const Workplace& place, const std::string& name) {
+  return Json::parse(place.read(name));
 }
 
 /// What happens in the window, without one.
@@ -64,10 +110,6 @@ inline std::unique_ptr<viewer::Session> sessionOf(const std::string& scene, cons
   options.pipelines = {std::filesystem::exists(pipeline) ? pipeline : committedPipeline(pipeline)};
   options.techniques = {binaryDirectory() / "lib/techniques"};
   return std::make_unique<viewer::Session>(options, [] {});
-}
-
-inline std::string quotedFile(const Workplace& place, const std::string& name) {
-  return "\"" + place.file(name) + "\"";
 }
 
 /// The value of a row of a panel in a record.

@@ -20,57 +20,43 @@ TEST_CASE(
     "a window shows the picture that render makes, to the bit, through a camera of the scene or a free one") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place,
-            "wait frame\n save_image " + quotedFile(place, "fixed.exr") +
-                "\n move 0.1 0.05 -0.2\n turn 5 deg -3 deg\n set { samples 2 }\n wait frame\n save_image " +
-                quotedFile(place, "free.exr") + "\n copy_command on\n record " +
-                quotedFile(place, "record.json") + "\n save_scene " + quotedFile(place, "seen.scene") +
-                "\n save_pipeline " + quotedFile(place, "set.pipeline") + "\n off \"light bulb\"\n record " +
-                quotedFile(place, "edited.json") + "\n quit on",
-            committedPipeline("reflective_shadow_maps"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
+  showed(place,
+         "wait frame\n save_image 'fixed.exr'\n move 0.1 0.05 -0.2\n turn 5 deg -3 deg\n set { samples 2 }\n"
+         " wait frame\n save_image 'free.exr'\n copy_command on\n record 'record.json'\n"
+         " save_scene 'seen.scene'\n save_pipeline 'set.pipeline'\n off \"light bulb\"\n"
+         " record 'edited.json'\n quit on",
+         committedPipeline("reflective_shadow_maps"));
   const std::string pipeline = committedPipeline("reflective_shadow_maps");
-  REQUIRE(runCommand("lumivox render '" + place.scene() + "' '" + pipeline + "' --resolution 24x16 -o '" +
-                     place.file("rendered.exr") + "'")
-              .exitCode == 0);
+  ran("render", place.scene(), pipeline, "--resolution 24x16 -o", place.file("rendered.exr"));
   checkSamePixels(place.file("fixed.exr"), place.file("rendered.exr"));
   // The command that the window tells, and the texts that it writes, repeat the other.
-  std::string command = rowOf(Json::parse(place.read("record.json")), "keep", "command");
+  std::string command = rowOf(recordOf(place, "record.json"), "keep", "command");
   REQUIRE(contains(command, "--eye"));
-  CHECK(contains(rowOf(Json::parse(place.read("edited.json")), "keep", "command"), "no command"));
+  CHECK(contains(rowOf(recordOf(place, "edited.json"), "keep", "command"), "no command"));
   command.replace(command.find("out/view.exr"), 12, "'" + place.file("told.exr") + "'");
   const CommandResult told = runCommand(command);
   INFO(told.errors);
   REQUIRE(told.exitCode == 0);
   checkSamePixels(place.file("free.exr"), place.file("told.exr"));
-  const CommandResult checked =
-      runCommand("lumivox check '" + place.file("seen.scene") + "' '" + place.file("set.pipeline") + "'");
+  const CommandResult checked = typed("check", place.file("seen.scene"), place.file("set.pipeline"));
   INFO(checked.errors << checked.output);
   CHECK(checked.exitCode == 0);
-  REQUIRE(runCommand("lumivox render '" + place.file("seen.scene") + "' '" + place.file("set.pipeline") +
-                     "' --camera view -o '" + place.file("written.exr") + "'")
-              .exitCode == 0);
+  ran("render", place.file("seen.scene"), place.file("set.pipeline"), "--camera view -o",
+      place.file("written.exr"));
   checkSamePixels(place.file("free.exr"), place.file("written.exr"));
 }
 
 TEST_CASE("a parameter that is clicked is the parameter that is written, and undone it is what it was") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place,
-            "wait frame\n panel change\n click \"change/samples/more\"\n wait frame\n record " +
-                quotedFile(place, "clicked.json") + "\n save_image " + quotedFile(place, "clicked.exr") +
-                "\n key \"ctrl Z\"\n wait frame\n record " + quotedFile(place, "undone.json") +
-                "\n set { samples 200 }\n wait frame\n record " + quotedFile(place, "written.json") +
-                "\n save_image " + quotedFile(place, "written.exr") + "\n quit on",
-            committedPipeline("reflective_shadow_maps"), "--resolution 24x16 --set samples=100");
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  CHECK(rowOf(Json::parse(place.read("clicked.json")), "change", "samples") == "200");
-  CHECK(rowOf(Json::parse(place.read("undone.json")), "change", "samples") == "100");
-  CHECK(rowOf(Json::parse(place.read("written.json")), "change", "samples") == "200");
+  showed(place,
+         "wait frame\n panel change\n click \"change/samples/more\"\n wait frame\n record 'clicked.json'\n"
+         " save_image 'clicked.exr'\n key \"ctrl Z\"\n wait frame\n record 'undone.json'\n"
+         " set { samples 200 }\n wait frame\n record 'written.json'\n save_image 'written.exr'\n quit on",
+         committedPipeline("reflective_shadow_maps"), "--resolution 24x16 --set samples=100");
+  CHECK(rowOf(recordOf(place, "clicked.json"), "change", "samples") == "200");
+  CHECK(rowOf(recordOf(place, "undone.json"), "change", "samples") == "100");
+  CHECK(rowOf(recordOf(place, "written.json"), "change", "samples") == "200");
   checkSamePixels(place.file("clicked.exr"), place.file("written.exr"));
 }
 
@@ -78,17 +64,12 @@ TEST_CASE(
     "what is switched off in the scene is left out at once, and the reference converges beside the picture") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place,
-            "wait frame\n wait reference 8\n wait judged\n record " + quotedFile(place, "on.json") +
-                "\n panel scene\n click \"scene/light bulb\"\n wait frame\n record " +
-                quotedFile(place, "off.json") +
-                "\n window 1 1\n wait frame\n window 4096 200\n wait frame\n shot " +
-                quotedFile(place, "wide.png") + "\n quit on",
-            committedPipeline("reflective_shadow_maps"));
-  INFO(done.errors);
-  REQUIRE(done.exitCode == 0);
-  const Json on = Json::parse(place.read("on.json")), off = Json::parse(place.read("off.json"));
+  showed(place,
+         "wait frame\n wait reference 8\n wait judged\n record 'on.json'\n panel scene\n"
+         " click \"scene/light bulb\"\n wait frame\n record 'off.json'\n window 1 1\n wait frame\n"
+         " window 4096 200\n wait frame\n shot 'wide.png'\n quit on",
+         committedPipeline("reflective_shadow_maps"));
+  const Json on = recordOf(place, "on.json"), off = recordOf(place, "off.json");
   CHECK(on.at("problem") == "");
   CHECK(contains(rowOf(on, "judge", "whole image layer"), "full"));
   CHECK(contains(rowOf(on, "judge", "whole image rmse"), "±"));
@@ -102,32 +83,25 @@ TEST_CASE(
     "a text that is broken while it is shown says where, and the picture comes back when it is mended") {
   if (!canShowWindows()) return;
   const Workplace place;
-  place.write("own.pipeline", readFile(committedPipeline("reflective_shadow_maps")));
-  place.write("script.view", "view \"a test\" {\n wait frame\n record " + quotedFile(place, "first.json") +
-                                 "\n wait problem\n record " + quotedFile(place, "broken.json") +
-                                 "\n wait mended\n wait frame\n record " + quotedFile(place, "mended.json") +
-                                 "\n quit on\n}\n");
-  CommandResult done;
-  std::thread window([&] {
-    done = runCommand(windowCommand("'" + place.scene() + "' '" + place.file("own.pipeline") +
-                                    "' --resolution 24x16 --script '" + place.file("script.view") + "'"));
-  });
-  const std::string good = place.read("own.pipeline");
-  const bool first = becomes([&] { return place.has("first.json"); });
-  place.write("own.pipeline", "pipeline \"Broken\" {\n  pass gbuffer direct_lighting.gbufer { }\n}\n");
-  const bool broken = becomes([&] { return place.has("broken.json"); });
-  std::filesystem::remove(place.file("own.pipeline"));  // gone while it is shown, and back
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const std::string good = readFile(committedPipeline("reflective_shadow_maps"));
   place.write("own.pipeline", good);
-  window.join();
-  INFO(done.errors);
-  REQUIRE(first);
-  REQUIRE(broken);
-  CHECK(done.exitCode == 0);
-  const std::string problem = Json::parse(place.read("broken.json")).at("problem");
-  CHECK(contains(problem, "own.pipeline:2:"));
-  CHECK(contains(problem, "gbuffer"));
-  CHECK(Json::parse(place.read("mended.json")).at("problem") == "");
+  showedWhile(
+      place, "'" + place.scene() + "' '" + place.file("own.pipeline") + "' --resolution 24x16",
+      "wait frame\n record 'first.json'\n wait problem\n record 'broken.json'\n wait mended\n wait frame\n"
+      " record 'mended.json'\n quit on",
+      {{"first.json",
+        [&] {
+          place.write("own.pipeline",
+                      "pipeline \"Broken\" {\n  pass gbuffer direct_lighting.gbufer { }\n}\n");
+        }},
+       {"broken.json", [&] {
+          std::filesystem::remove(place.file("own.pipeline"));  // gone while it is shown, and back
+          std::this_thread::sleep_for(std::chrono::milliseconds(400));
+          place.write("own.pipeline", good);
+        }}});
+  CHECK_THAT(recordOf(place, "broken.json").at("problem").get<std::string>(),
+             Tells("own.pipeline:2", "gbuffer"));
+  CHECK(recordOf(place, "mended.json").at("problem") == "");
 }
 
 TEST_CASE("a shader that is broken while it is shown says its line, and what is mended is swapped in") {
@@ -144,36 +118,23 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
     fs::copy(sourceDirectory() / "shaders" / folder, place.path() / "shaders" / folder);
   const fs::path shader = place.path() / "shaders/direct_lighting/compose.comp";
   const std::string good = readFile(shader);
-  place.write("script.view", "view \"a test\" {\n wait frame\n save_image " + quotedFile(place, "first.exr") +
-                                 "\n wait problem\n record " + quotedFile(place, "broken.json") +
-                                 "\n wait mended\n wait frame\n save_image " +
-                                 quotedFile(place, "mended.exr") + "\n quit on\n}\n");
-  CommandResult done;
-  std::thread window([&] {
-    done = runCommand(windowCommand("--techniques '" + place.file("lib/techniques") + "' '" + place.scene() +
-                                    "' '" + committedPipeline("reflective_shadow_maps") +
-                                    "' --resolution 24x16 --script '" + place.file("script.view") + "'"));
-  });
-  const bool first = becomes([&] { return place.has("first.exr"); });
-  place.write("shaders/direct_lighting/compose.comp", good + "\nthis is no GLSL\n");
-  const bool broken = becomes([&] { return place.has("broken.json"); });
   // Half as bright: what is swapped in is seen.
   std::string changed = good;
   const std::size_t store = changed.find("imageStore(");
   REQUIRE(store != std::string::npos);
   const std::size_t end = changed.find(");\n", store), value = changed.find("vec4(", store);
   changed.insert(end, ")").insert(value, "(0.5 * ");
-  place.write("shaders/direct_lighting/compose.comp", changed);
-  window.join();
-  INFO(done.errors);
-  REQUIRE(first);
-  REQUIRE(broken);
-  REQUIRE(done.exitCode == 0);
-  const std::string problem = Json::parse(place.read("broken.json")).at("problem");
-  CHECK(contains(problem, "compose.comp"));
-  const auto line = std::count(good.begin(), good.end(), '\n') + 2;
-  INFO(problem);
-  CHECK(contains(problem, "compose.comp:" + std::to_string(line)));
+  const auto write = [&](const std::string& text) {
+    return [&place, text] { place.write("shaders/direct_lighting/compose.comp", text); };
+  };
+  showedWhile(place,
+              "--techniques '" + place.file("lib/techniques") + "' '" + place.scene() + "' '" +
+                  committedPipeline("reflective_shadow_maps") + "' --resolution 24x16",
+              "wait frame\n save_image 'first.exr'\n wait problem\n record 'broken.json'\n wait mended\n"
+              " wait frame\n save_image 'mended.exr'\n quit on",
+              {{"first.exr", write(good + "\nthis is no GLSL\n")}, {"broken.json", write(changed)}});
+  CHECK_THAT(recordOf(place, "broken.json").at("problem").get<std::string>(),
+             Tells("compose.comp:" + std::to_string(std::count(good.begin(), good.end(), '\n') + 2)));
   const ImageBuffer before = readExr(place.file("first.exr")).layers.at("final"),
                     after = readExr(place.file("mended.exr")).layers.at("final");
   REQUIRE(before.sameShape(after));
@@ -184,34 +145,27 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
 TEST_CASE("two hundred random actions leave a window that works") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(
-      place,
-      "seed 7\n wait frame\n random 200\n play off\n beside nothing\n reset \"all\"\n reset scene\n camera main\n"
-      "wait frame\n record " +
-          quotedFile(place, "record.json") + "\n quit on",
-      committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
-  INFO(done.errors);
-  CHECK(done.exitCode == 0);
-  CHECK(Json::parse(place.read("record.json")).at("settled") == true);
+  showed(place,
+         "seed 7\n wait frame\n random 200\n play off\n beside nothing\n reset \"all\"\n reset scene\n"
+         " camera main\nwait frame\n record 'record.json'\n quit on",
+         committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
+  CHECK(recordOf(place, "record.json").at("settled") == true);
 }
 
 TEST_CASE("a technique that throws is told in place, and the window goes on") {
   if (!canShowWindows()) return;
   const Place place;
-  place.write(
-      "refuse.pipeline",
-      "pipeline \"Refuse\" {\n  pass paint hostile.paint { deed refuse }\n\n  output direct paint.radiance\n}\n");
-  place.write("script.view", "view \"a test\" {\n wait problem\n record " +
-                                 quotedFile(place, "refused.json") +
-                                 "\n show fast\n wait mended\n wait frame\n save_image " +
-                                 quotedFile(place, "good.exr") + "\n quit on\n}\n");
-  const CommandResult done =
-      runCommand(windowCommand("--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" +
-                               place.file("refuse.pipeline") + "' '" + place.file("fast.pipeline") +
-                               "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  INFO(done.errors);
-  CHECK(done.exitCode == 0);
-  CHECK(contains(Json::parse(place.read("refused.json")).at("problem"), "the pass refuses"));
+  place.write("refuse.pipeline",
+              "pipeline \"Refuse\" {\n  pass paint hostile.paint { deed refuse }\n\n"
+              "  output direct paint.radiance\n}\n");
+  showedWhile(
+      place,
+      "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" + place.file("refuse.pipeline") +
+          "' '" + place.file("fast.pipeline") + "' --resolution 8x8",
+      "wait problem\n record 'refused.json'\n show fast\n wait mended\n wait frame\n save_image 'good.exr'\n"
+      " quit on",
+      {});
+  CHECK(contains(recordOf(place, "refused.json").at("problem"), "the pass refuses"));
   CHECK(place.has("good.exr"));
 }
 
@@ -228,7 +182,7 @@ TEST_CASE("without a display a sentence says so, and wrong texts open no window"
   const CommandResult script = runCommand(program + texts + " --script '" + place.file("wrong.view") + "'");
   CHECK(script.exitCode == 2);
   CHECK(contains(script.errors, "did you mean 'move'"));
-  const CommandResult absent = runCommand("lumivox view '" + place.file("absent.scene") + "'");
+  const CommandResult absent = typed("view", place.file("absent.scene"));
   CHECK(absent.exitCode == 2);
   CHECK(unwrapped(absent.errors) ==
         "lumivox-view: " + place.file("absent.scene") + ": cannot read: No such file or directory\n");

@@ -59,31 +59,19 @@ TEST_CASE("a camera that is renamed while somebody looks through it gives way to
 TEST_CASE("the window goes on, with its edits, when the camera that it looks through is renamed") {
   if (!canShowWindows()) return;
   const Workplace place;
-  place.write("script.view",
-              "view \"a test\" {\n wait frame\n light \"bulb\" { power 2 }\n wait frame\n record " +
-                  quotedFile(place, "first.json") + "\n wait problem\n record " +
-                  quotedFile(place, "broken.json") + "\n wait mended\n wait frame\n record " +
-                  quotedFile(place, "renamed.json") + "\n quit on\n}\n");
-  CommandResult done;
-  std::thread window([&] {
-    done = runCommand(windowCommand("'" + place.scene() + "' '" + committedPipeline("direct_lighting") +
-                                    "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
-  });
   const std::string text = place.read("room.scene");
-  const bool first = becomes([&] { return place.has("first.json"); });
-  place.write("room.scene", replaced(text, "camera main {", "camera front { what"));
-  const bool broken = becomes([&] { return place.has("broken.json"); });
-  place.write("room.scene", replaced(text, "camera main {", "camera front {"));
-  window.join();
-  INFO(done.errors);
-  REQUIRE(first);
-  REQUIRE(broken);
-  CHECK(done.exitCode == 0);
-  REQUIRE(place.has("renamed.json"));
-  const Json renamed = Json::parse(place.read("renamed.json"));
+  const auto renamedTo = [&](const char* head) {
+    return [&place, text = replaced(text, "camera main {", head)] { place.write("room.scene", text); };
+  };
+  showedWhile(
+      place, "'" + place.scene() + "' '" + committedPipeline("direct_lighting") + "' --resolution 8x8",
+      "wait frame\n light \"bulb\" { power 2 }\n wait frame\n record 'first.json'\n wait problem\n"
+      " record 'broken.json'\n wait mended\n wait frame\n record 'renamed.json'\n quit on",
+      {{"first.json", renamedTo("camera front { what")}, {"broken.json", renamedTo("camera front {")}});
+  const Json renamed = recordOf(place, "renamed.json");
   CHECK(renamed.at("problem") == "");
   CHECK(rowOf(renamed, "look", "camera") == "front");
-  CHECK(contains(renamed.at("message"), "no longer has the camera 'main'"));
+  CHECK_THAT(renamed.at("message").get<std::string>(), Tells("no longer", "camera", "main"));
   CHECK(contains(renamed.at("panels").at("scene").dump(), "\"changed\":true"));
 }
 
@@ -171,14 +159,10 @@ TEST_CASE(
 TEST_CASE("a refused statement of a panel is told in the window, which goes on") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(
-      place,
-      "wait frame\n light \"bulb\" { power 2 }\n panel keep\n click \"keep/copy_command\"\n wait frame\n"
-      " record " +
-          quotedFile(place, "told.json") + "\n quit on",
-      committedPipeline("direct_lighting"), "--resolution 8x8");
-  INFO(done.errors);
-  CHECK(done.exitCode == 0);
+  showed(place,
+         "wait frame\n light \"bulb\" { power 2 }\n panel keep\n click \"keep/copy_command\"\n wait frame\n"
+         " record 'told.json'\n quit on",
+         committedPipeline("direct_lighting"), "--resolution 8x8");
   REQUIRE(place.has("told.json"));
-  CHECK(contains(Json::parse(place.read("told.json")).at("message"), "no command: the texts do not say"));
+  CHECK(contains(recordOf(place, "told.json").at("message"), "no command: the texts do not say"));
 }
