@@ -71,7 +71,7 @@ TEST_CASE("names that are no C++ namespace, no folder or taken are refused, and 
   const TemporaryDirectory work;
   const std::string in = " --in '" + work.path().string() + "/lab'";
   for (const char* name : {"''", "Glow", "2d", "_glow", "glow_", "a__b", "a-b", "../up", "a/b", "ns::a",
-                           "class", "new", "common", "device", "shaders"}) {
+                           "class", "new", "common", "device", "shaders", "toolkit", "viewer"}) {
     INFO(name);
     checkRefused(runCommand(std::string("lumivox new technique ") + name + in), "my_paper");
   }
