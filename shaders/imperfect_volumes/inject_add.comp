@@ -2,18 +2,17 @@
 // Each fragment adds its share to the means of its voxel.
 layout(local_size_x = 64) in;
 #include "volume_sums.glsl"
-#include "common/fragments.glsl"
+#include "toolkit/slot_of_voxel.glsl"
 
 layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };
-layout(std430, binding = 3) readonly buffer Brightest { uint brightest[]; };
-layout(binding = 0, r32ui) uniform readonly uimage3D slots;
+layout(std430, binding = 6) readonly buffer Brightest { uint brightest[]; };
 
 void main() {
   uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
-  uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
-  if (slot >= uint(fragmentsOfSlot.length())) return;  // there was no room for its voxel: the frame is made anew
+  uint slot;
+  if (!slotOf(unpackVoxel(fragment.voxel), slot)) return;
   float weight = clamp(unpackHalf2x16(fragment.albedoBCoverage).y, 0.0, 1.0) / float(fragmentsOfSlot[slot]);
   atomicAdd(sums[slot].coverage, shareOf(weight));
   float range = uintBitsToFloat(brightest[slot]);

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/lights.glsl"
 #include "common/two_sided_light.glsl"
 #endif
-#include "common/fragments.glsl"
+#include "toolkit/slot_of_voxel.glsl"
 #include "common/known_light.glsl"
 
 layout(std140, binding = 0) uniform Lighting {
@@ -22,7 +22,6 @@ layout(std140, binding = 0) uniform Lighting {
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): front, back, three channels each
 layout(std430, binding = 3) buffer Brightest { uint brightest[]; };  // bits of a float: for numbers from 0 on their order is that of the numbers
-layout(binding = 0, r32ui) uniform readonly uimage3D slots;
 
 void main() {
   uint index = listIndex();
@@ -45,6 +44,6 @@ void main() {
       radiances[6 * index + 3 * side + channel] = radiance;
       most = max(most, radiance);
     }
-  uint slot = imageLoad(slots, voxel).r - 1u;
-  if (slot < uint(brightest.length())) atomicMax(brightest[slot], floatBitsToUint(most));
+  uint slot;
+  if (slotOf(voxel, slot)) atomicMax(brightest[slot], floatBitsToUint(most));
 }

@@ -6,14 +6,12 @@
 #include "common/spherical_harmonics.glsl"
 layout(local_size_x = 64) in;
 #include "volume_sums.glsl"
-#include "common/list.glsl"
+#include "toolkit/slots.glsl"
 
 layout(constant_id = 0) const int cosineLobe = 0;
 
 layout(std140, binding = 0) uniform Resolving { float unit; };  // W/(sr m^2) that the number 1 stands for
-layout(std430, binding = 0) readonly buffer SlotCount { uint slotCount; };
-layout(std430, binding = 1) readonly buffer SlotVoxels { uint slotVoxels[]; };
-layout(std430, binding = 3) readonly buffer Brightest { uint brightest[]; };
+layout(std430, binding = 6) readonly buffer Brightest { uint brightest[]; };
 #if PRECISION == PRECISION_HALF
 layout(binding = 0, rgba16f) uniform writeonly image3D redImage;
 layout(binding = 1, rgba16f) uniform writeonly image3D greenImage;
@@ -32,9 +30,9 @@ vec4 coefficientsOf(uint slot, int channel, float scale) {
 }
 
 void main() {
-  uint slot = listIndex();
-  if (slot >= slotCount) return;
-  ivec3 voxel = unpackVoxel(slotVoxels[slot]);
+  uint slot;
+  ivec3 voxel;
+  if (!slotHere(slot, voxel)) return;
   // Coverages of nothing at all leave no average.
   float scale = sums[slot].coverage > 0u ? kFixedPoint / float(sums[slot].coverage) * uintBitsToFloat(brightest[slot]) / unit : 0.0;
   imageStore(redImage, voxel, coefficientsOf(slot, 0, scale));

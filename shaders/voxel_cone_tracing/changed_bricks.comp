@@ -3,7 +3,7 @@
 // become empty has to be found too.
 #include "bricks.glsl"
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-#include "changed_cells.glsl"
+#include "toolkit/changed_cells.glsl"
 
 layout(std140, binding = 0) uniform Size { ivec3 brickCount; };
 layout(std430, binding = 3) buffer Bricks { Brick bricks[]; };

@@ -12,7 +12,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #if CHANGED
-#include "changed_cells.glsl"
+#include "toolkit/changed_cells.glsl"
 #endif
 
 layout(std140, binding = 0) uniform Size { ivec3 brickCount; };

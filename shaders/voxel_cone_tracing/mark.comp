@@ -3,7 +3,7 @@
 #include "bricks.glsl"
 
 layout(local_size_x = 64) in;
-#include "taken_fragments.glsl"
+#include "toolkit/taken_fragments.glsl"
 
 layout(std140, binding = 0) uniform Size { ivec3 brickCount; };
 layout(std430, binding = 3) buffer Bricks { Brick bricks[]; };

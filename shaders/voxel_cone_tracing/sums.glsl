@@ -3,7 +3,7 @@
 // after the local size, which is along x alone.
 #pragma lumivox axis PLACES grid octree clipmap
 #pragma lumivox require !CHANGED || PLACES != clipmap
-#include "taken_fragments.glsl"
+#include "toolkit/taken_fragments.glsl"
 #if PLACES == PLACES_OCTREE
 #include "octree/octree_levels.glsl"
 #include "octree/octree_ranks.glsl"

@@ -1,5 +1,6 @@
 // Direct light into the volume: Mavridis & Papaioannou 2011, Sec. 3.1 and 3.2.
 #include "lumivox/toolkit/light_bounds.h"
+#include "lumivox/toolkit/voxel_slots.h"
 #include "volume.h"
 
 namespace lumivox::imperfect_volumes {
@@ -50,11 +51,7 @@ class InjectPass : public Pass {
 
   void fill(PassContext& frame, const ShGrid& result, const LightBinding& lights, float most, bool half) {
     const GridPlacement& grid = fragments->grid;
-    const VoxelSlots slots =
-        claimSlots(frame, *fragments,
-                   {frame.program(slots_claim::kProgram), frame.program(slots_number::kProgram),
-                    frame.program(finish::kProgram)},
-                   room_);
+    const VoxelSlots slots = claimSlots(frame, *fragments, room_);
     const gpu::BufferRef radiances = frame.elements(inject_light::radiances, 6 * fragments->capacity,
                                                     "radiance that fragments reflect"),
                          brightest =
@@ -62,26 +59,23 @@ class InjectPass : public Pass {
                          sums = frame.emptyElements(inject_add::sums, slots.room, "sums of slots");
     const inject_light::Variant lighting{.lights = lights.count > 0,
                                          .reflected = fragments->reflected != nullptr};
-    forEachFragment(
-        frame, frame.program(lighting),
-        {inject_light::lighting({.gridLow = grid.low,
-                                 .voxelSize = grid.voxelSize,
-                                 .lightCount = lights.count,
-                                 .mostRadiance = most}),
-         inject_light::radiances(radiances), inject_light::brightest(brightest),
-         inject_light::slots(slots.numbers), inject_light::reflected(fragments->reflected), lights},
-        *fragments);
-    const shader::BindingSet summed{inject_add::fragmentsOfSlot(slots.fragments), inject_add::sums(sums),
-                                    inject_add::brightest(brightest)};
+    forEachFragment(frame, frame.program(lighting),
+                    {inject_light::lighting({.gridLow = grid.low,
+                                             .voxelSize = grid.voxelSize,
+                                             .lightCount = lights.count,
+                                             .mostRadiance = most}),
+                     inject_light::radiances(radiances), inject_light::brightest(brightest),
+                     SlotBinding(slots), inject_light::reflected(fragments->reflected), lights},
+                    *fragments);
+    const shader::BindingSet summed{inject_add::sums(sums), inject_add::brightest(brightest)};
     forEachFragment(frame, frame.program(inject_add::kProgram),
-                    {summed, inject_add::radiances(radiances), inject_add::slots(slots.numbers)}, *fragments);
+                    {summed, inject_add::radiances(radiances), SlotBinding(slots)}, *fragments);
     const inject_resolve::Variant variant{half ? inject_resolve::Variant::precisionHalf
                                                : inject_resolve::Variant::precisionFloat};
-    forEachSlot(
-        frame, frame.program(variant, inject_resolve::Constants{.cosineLobe = lobe == Lobe::cosine}),
-        {summed, inject_resolve::resolving({.unit = result.unit}), inject_resolve::slotCount(slots.count),
-         inject_resolve::slotVoxels(slots.voxels), images(result.levels.front().coefficients)},
-        slots);
+    forEachSlot(frame, frame.program(variant, inject_resolve::Constants{.cosineLobe = lobe == Lobe::cosine}),
+                {summed, inject_resolve::resolving({.unit = result.unit}),
+                 images(result.levels.front().coefficients)},
+                slots);
   }
 };
 

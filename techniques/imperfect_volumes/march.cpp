@@ -9,6 +9,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/toolkit/bit_grid.h"
+#include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "lumivox/toolkit/volume_room.h"
 #include "volume.h"
@@ -115,8 +116,7 @@ class Marching : public Pass {
                    {volumeBinding(grid(), occupied), list_marked::marks(marks),
                     list_marked::listCount(result.count), list_marked::list(result.voxels)},
                    size);
-    finishCount(frame, frame.program(finish::kProgram), result.count, grid().voxelCount(),
-                kCountedGroupSize / kTogether);
+    finishCount(frame, result.count, grid().voxelCount(), kCountedGroupSize / kTogether);
     return result;
   }
 

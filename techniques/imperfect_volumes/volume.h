@@ -9,7 +9,6 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/sh_grid.h"
-#include "lumivox/toolkit/voxel_slots.h"
 
 namespace lumivox::imperfect_volumes {
 

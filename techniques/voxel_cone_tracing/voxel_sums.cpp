@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "changed_cells.h"
-#include "lumivox/toolkit/bindings.h"
-
 namespace lumivox::voxel_cone_tracing {
 
 using namespace shaders::voxel_cone_tracing;
@@ -78,7 +75,7 @@ VoxelSums claimChanged(PassContext& frame, const VoxelFragments& fragments, cons
   const BrickRoom all(frame, std::min(fragments.capacity, bricksOf(sums)), "occupied bricks"),
       // What was occupied before may be so no more.
       some(frame, std::min(2 * fragments.capacity, bricksOf(sums)), "changed bricks");
-  const shader::BindingSet bindings{claim::size({sums.brickCount}), bindingOf(changed), sums.bindings()};
+  const shader::BindingSet bindings{claim::size({sums.brickCount}), changed.bindings(), sums.bindings()};
   frame.dispatch(frame.program(changed_bricks::kProgram), bindings, sums.brickCount);
   forEachTaken(frame, frame.program(mark::Variant{.changed = 1}), bindings, fragments, sums);
   frame.dispatch(frame.program(claim::Variant{.changed = 1, .directions = directional}),

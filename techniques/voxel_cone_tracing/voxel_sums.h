@@ -3,11 +3,10 @@
 #pragma once
 
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/change_tracking.h"
 #include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
-
-struct ChangedCells;
 
 /// What fragments do to the faces of their voxel, where it has six.
 struct FaceRule {

@@ -22,15 +22,6 @@ Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPl
   return inGrid;
 }
 
-void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity) {
-  lumivox::finishCount(frame, frame.program(finish::kProgram), count, capacity);
-}
-
-void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
-                   std::uint64_t base, std::uint64_t& room, bool repeats) {
-  lumivox::finishGuessed(frame, frame.program(finish::kProgram), count, capacity, base, room, repeats);
-}
-
 VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
                           std::uint64_t more) {
   VoxelFragments list;

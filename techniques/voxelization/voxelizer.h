@@ -9,8 +9,8 @@
 
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/grid_placement.h"
-#include "lumivox/toolkit/voxel_slots.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -23,11 +23,6 @@ enum class Around { scene, camera };
 /// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
 /// device's arithmetic may round otherwise.
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
-
-/// finishCount() and finishGuessed() of lumivox/toolkit/voxel_slots.h.
-void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity);
-void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
-                   std::uint64_t base, std::uint64_t& room, bool repeats = false);
 
 /// A list in this grid with room for `more` fragments behind those of `base`, and those copied: all on the
 /// device. Without a base (null) it is empty. Error when it would be too large.

@@ -26,7 +26,6 @@ const roofline::KernelEntry& kernelNamed(const std::string& name) {
 shader::ShaderLibrary& countingLibrary() {
   static shader::ShaderLibrary library(device());
   static const bool ready = [] {
-    roofline::addDeviceShaders(library);
     library.countWork();
     return true;
   }();
@@ -166,7 +165,6 @@ TEST_CASE("bytes that are uploaded and cleared count once, and those of counting
 
 TEST_CASE("four times the work takes about four times the time, so that nothing of it was optimised away") {
   shader::ShaderLibrary library(device());
-  roofline::addDeviceShaders(library);
   for (const char* name : {"texture_samples_d3_rgba16f_linear", "buffer_atomics", "float_operations", "sines",
                            "buffer_reads", "fragments"}) {
     const roofline::Kernel kernel = kernelNamed(name).make(library);
@@ -190,7 +188,6 @@ TEST_CASE("four times the work takes about four times the time, so that nothing 
 TEST_CASE("a pass that does one known thing is found at its ceiling, within a fifth") {
   if (lacksSpirv()) return;
   shader::ShaderLibrary plain(device());
-  roofline::addDeviceShaders(plain);
   shader::ShaderLibrary& counting = countingLibrary();
   struct Known {
     const char *name, *resource;

@@ -212,17 +212,24 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
       1);
   CHECK(dependentTechniques({{"shaders/shading/a.comp", "#include \"cone_tracing/b.glsl\"\n"}}, two).size() ==
         1);
+  CHECK(dependentTechniques({{"shaders/toolkit/a.comp", "#include \"cone_tracing/b.glsl\"\n"}}, two).size() ==
+        1);
   CHECK(dependentTechniques({{"techniques/shading/a.cpp", "#include \"lumivox/experiment/report.h\"\n"}}, two)
             .size() == 1);
-  CHECK(dependentTechniques({{"techniques/shading/a.cpp",
-                              "#include \"shading_shaders.h\"\n#include \"lumivox/pipeline/pass.h\"\n"},
-                             {"shaders/shading/a.comp", "#include \"common/brdf.glsl\"\n"}},
-                            two)
+  CHECK(dependentTechniques(
+            {{"techniques/shading/a.cpp",
+              "#include \"shading_shaders.h\"\n#include \"lumivox/pipeline/pass.h\"\n"},
+             {"shaders/shading/a.comp", "#include \"common/brdf.glsl\"\n#include \"toolkit/slots.glsl\"\n"}},
+            two)
             .empty());
 
-  const std::set<std::string> whole = {
-      "techniques/shading/CMakeLists.txt", "techniques/shading/shading.cpp", "techniques/shading/README.md",
-      "tests/techniques/shading_test.cpp", "shaders/shading/a.comp",         "shaders/common/b.glsl"};
+  const std::set<std::string> whole = {"techniques/shading/CMakeLists.txt",
+                                       "techniques/shading/shading.cpp",
+                                       "techniques/shading/README.md",
+                                       "tests/techniques/shading_test.cpp",
+                                       "shaders/shading/a.comp",
+                                       "shaders/common/b.glsl",
+                                       "shaders/toolkit/c.comp"};
   const Sources uses = {{"scenes/pipelines/shading.pipeline", "pass shade shading.shade { }"}};
   CHECK(brokenNames(whole, {"shading"}, uses).empty());
   CHECK(brokenNames(whole, {"shading"}, {}).size() == 1);

@@ -65,7 +65,7 @@ TEST_CASE("names that are no C++ namespace, no folder or taken are refused, and 
     return typed("new technique", name, "--in", work.path() / "lab");
   };
   for (const char* name : {"", "Glow", "2d", "_glow", "glow_", "a__b", "a-b", "../up", "a/b", "ns::a",
-                           "class", "new", "common", "device", "shaders"}) {
+                           "class", "new", "common", "device", "shaders", "toolkit", "viewer"}) {
     INFO(name);
     checkRefused(made(name), "my_paper");
   }

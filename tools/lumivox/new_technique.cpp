@@ -30,7 +30,8 @@ const std::set<std::string>& reservedWords() {
       "requires", "return", "short", "signed", "sizeof", "static", "static_assert", "static_cast", "struct",
       "switch", "template", "this", "thread_local", "throw", "true", "try", "typedef", "typeid", "typename",
       "union", "unsigned", "using", "virtual", "void", "volatile", "wchar_t", "while", "xor", "xor_eq",
-      "command", "common", "device", "dsl", "gpu", "lumivox", "report", "shader", "shaders", "std", "test"
+      "command", "common", "device", "dsl", "gpu", "lumivox", "report", "shader", "shaders", "std", "test",
+      "toolkit", "viewer"
       // clang-format on
   };
   return words;

@@ -76,7 +76,8 @@ void LiveTechniques::use(const std::set<std::string>& techniques) {
     const fs::path shaders = shadersOf(technique, libraryOf(technique));
     if (shaders.empty()) continue;
     std::error_code ignored;
-    for (const fs::path& folder : {shaders, shaders.parent_path() / "common"})
+    for (const fs::path& folder :
+         {shaders, shaders.parent_path() / "common", shaders.parent_path() / "toolkit"})
       for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, ignored))
         if (file.is_regular_file(ignored)) files_.emplace(file.path(), std::pair(technique, true));
   }
@@ -145,8 +146,10 @@ bool LiveTechniques::update() {
   for (const fs::path& file : watch_.changed()) {
     const auto& [technique, shader] = files_.at(file);
     // What all techniques include belongs to each of them.
-    const bool common = shader && file.parent_path().filename() == "common";
-    for (const std::string& one : common ? used_ : std::set<std::string>{technique}) {
+    const fs::path below = file.lexically_relative(shadersOf(technique, libraryOf(technique)).parent_path());
+    const bool shared =
+        shader && !below.empty() && (*below.begin() == "common" || *below.begin() == "toolkit");
+    for (const std::string& one : shared ? used_ : std::set<std::string>{technique}) {
       const auto known = which.emplace(one, shader).first;
       known->second = known->second && shader;
     }

@@ -7,29 +7,15 @@
 #include <cstring>
 
 #include "lumivox/base/error.h"
-#include "lumivox/base/installation.h"
 #include "lumivox/shader/library.h"
 #include "viewer_shaders.h"
 
 namespace lumivox::viewer {
 namespace {
 
-namespace fs = std::filesystem;
 namespace program = shaders::viewer::voxels;
 
 constexpr std::array kHarmonics{"Y00", "Y1-1", "Y10", "Y11"};
-
-/// Beside the framework's libraries, in the tree and where it is installed.
-fs::path packFile() {
-  const auto here = programFile();
-  std::error_code ignored;
-  if (here)
-    for (const char* folder : {"lib/lumivox/shaders", "lib/shaders"}) {
-      const fs::path file = here->parent_path().parent_path() / folder / "viewer.shaderpack";
-      if (fs::is_regular_file(file, ignored)) return file;
-    }
-  throw AbsentError("the window's shaders, lib/shaders/viewer.shaderpack, are not beside the program");
-}
 
 std::string sizeText(const glm::ivec3& size) {
   return fmt::format("{} x {} x {}", size.x, size.y, size.z);
@@ -187,9 +173,7 @@ std::vector<std::string> drawnFields(const PortKind& kind) {
 }
 
 struct VoxelView::State {
-  explicit State(gpu::Device& of) : device(of), library(of) {
-    library.addPack(shader::readShaderPack(packFile()));
-  }
+  explicit State(gpu::Device& of) : device(of), library(of) {}
   gpu::Device& device;
   shader::ShaderLibrary library;
 };

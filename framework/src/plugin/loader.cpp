@@ -12,6 +12,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
 #include "lumivox/base/log.h"
 #include "lumivox/plugin/technique.h"
 #include "plugin/elf_check.h"
@@ -122,11 +123,7 @@ std::vector<fs::path> TechniqueSet::defaultDirectories(const std::vector<fs::pat
       if (!directory.empty()) directories.emplace_back(directory);
     }
   }
-  Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&TechniqueSet::defaultDirectories), &info) != 0 &&
-      info.dli_fname != nullptr) {
-    directories.push_back(fs::absolute(info.dli_fname).parent_path() / "techniques");
-  }
+  directories.push_back(libraryFolder() / "techniques");
   return directories;
 }
 

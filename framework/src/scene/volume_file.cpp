@@ -5,6 +5,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
 
 namespace lumivox {
 namespace {
@@ -13,12 +14,7 @@ constexpr const char* kLibrary = "liblumivox_volume.so";
 
 /// The reader, from the folder of this library. It stays open: closing it would unload OpenVDB's types.
 VolumeReader* openReader() {
-  Dl_info info{};
-  std::filesystem::path library = kLibrary;
-  if (dladdr(reinterpret_cast<const void*>(&readVolumeFile), &info) != 0 && info.dli_fname != nullptr) {
-    library = std::filesystem::path(info.dli_fname).parent_path() / kLibrary;
-  }
-  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* handle = dlopen((libraryFolder() / kLibrary).c_str(), RTLD_NOW | RTLD_LOCAL);
   void* symbol = handle == nullptr ? nullptr : dlsym(handle, kVolumeReaderSymbol);
   if (symbol == nullptr) {
     throw Error(fmt::format("the reader of volume files cannot be opened: {}; expected {} beside liblumivox",

@@ -13,6 +13,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/hash.h"
+#include "lumivox/base/installation.h"
 
 namespace lumivox {
 namespace {
@@ -50,6 +51,7 @@ std::string frameworkHash() {
         throw Error("the framework's own libraries cannot be found, so results cannot be told apart");
       hasher.add(readFile(information.dli_fname, kLargestLibraryFile));
     }
+    hasher.add(readFile(frameworkPack("toolkit")));  // which techniques run as they run the library
     return hasher.finish().text();
   }();
   return hash;

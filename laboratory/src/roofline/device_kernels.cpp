@@ -1,6 +1,5 @@
 #include "roofline/device_kernels.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -509,14 +508,6 @@ std::vector<KernelEntry> makeKernels() {
 const std::vector<KernelEntry>& kernels() {
   static const std::vector<KernelEntry> all = makeKernels();
   return all;
-}
-
-void addDeviceShaders(shader::ShaderLibrary& library) {
-  Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&kernels), &info) == 0 || info.dli_fname == nullptr)
-    throw Error("the framework's library cannot be found, and with it the shaders that measure the device");
-  library.addPack(shader::readShaderPack(std::filesystem::path(info.dli_fname).parent_path() /
-                                         "shaders/device.shaderpack"));
 }
 
 }  // namespace lumivox::roofline

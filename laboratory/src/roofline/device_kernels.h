@@ -24,7 +24,4 @@ struct KernelEntry {
 };
 const std::vector<KernelEntry>& kernels();
 
-/// Adds the pack of these programs, which lies beside the library of the framework.
-void addDeviceShaders(shader::ShaderLibrary& library);
-
 }  // namespace lumivox::roofline

@@ -129,7 +129,6 @@ std::vector<PeakRate> measurePeakRates(gpu::Device& device, const PeakRateOption
       chosen.push_back(&entry);
 
   shader::ShaderLibrary library(device);
-  addDeviceShaders(library);
   const DeviceIdentity identity = identityOf(device);
   std::vector<PeakRate> peakRates;
   for (const KernelEntry* entry : chosen) {

@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #include "clipmap_items.glsl"
 
 #if LIGHTS
-#include "../shadowed_anew.glsl"
+#include "toolkit/shadowed_anew.glsl"
 #endif
 
 layout(std140, binding = 0) uniform Moved {

@@ -17,7 +17,7 @@ layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
 #if CHANGED
-#include "../changed_cells.glsl"
+#include "toolkit/changed_cells.glsl"
 #include "octree_still.glsl"
 #endif
 

@@ -3,7 +3,7 @@
 // Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once
 // (octree_tag.comp does as published).
 layout(local_size_x = 64) in;
-#include "../moving_fragments.glsl"
+#include "toolkit/moving_fragments.glsl"
 #include "octree_tags.glsl"
 #include "octree_extent.glsl"
 

@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "common/integer_mean.glsl"
 #include "octree_levels.glsl"
 #if CHANGED
-#include "../changed_cells.glsl"
+#include "toolkit/changed_cells.glsl"
 #include "octree_still.glsl"
 #endif
 

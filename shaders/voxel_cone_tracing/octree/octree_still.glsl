@@ -3,6 +3,7 @@
 
 layout(std430, binding = 13) readonly buffer StillRanks { RankedTags stillRanks[]; };
 layout(binding = 1) uniform sampler3D stillPool;
+layout(std140, binding = 6) uniform StillBricks { int stillShift; };  // it has 2 to the power of this bricks along x and along y
 
 // A voxel of a node by its place along the curve of its depth; one at least of the node's is there.
 vec4 stillVoxel(uint morton, int depth, ivec3 own, uint face) {

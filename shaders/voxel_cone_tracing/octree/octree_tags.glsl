@@ -1,32 +1,12 @@
-// A bit for each node that could be, set where there is one: so all nodes are counted, and room is made for them, before any is written. The
-// bits of a depth follow each other along a Morton curve, so that a tile of eight nodes is a byte.
+// A bit for each node that could be, set where there is one: so all nodes are counted, and room is made for them, before any is written. A
+// tile of eight nodes is a byte.
 #ifndef LUMIVOX_OCTREE_TAGS
 #define LUMIVOX_OCTREE_TAGS
+#include "toolkit/bit_tree.glsl"
 
 const uint kNone = 0xffffffffu;
 // Words of tags that one thread counts.
 const uint kChunk = 64u;
-
-// The first word of a depth d, which has 8^d bits in a word at least:
-//   1 + 1 + sum over k from 2 to d - 1 of 2^(3k - 5) = 2 + 2 (8^(d - 2) - 1) / 7,
-// where (8^n - 1) / 7 has every third of 3n bits.
-uint firstWord(int depth) { return depth < 2 ? uint(depth) : 2u + 2u * (0x09249249u & ((1u << 3 * (depth - 2)) - 1u)); }
-
-uint spreadBits(uint x) {
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-uint gatherBits(uint x) {
-  x &= 0x09249249u;
-  x = (x | x >> 2) & 0x030c30c3u;
-  x = (x | x >> 4) & 0x0300f00fu;
-  x = (x | x >> 8) & 0x030000ffu;
-  return (x | x >> 16) & 0x3ffu;
-}
-uint mortonOf(ivec3 place) { return spreadBits(uint(place.x)) | spreadBits(uint(place.y)) << 1 | spreadBits(uint(place.z)) << 2; }
-ivec3 placeOf(uint morton) { return ivec3(gatherBits(morton), gatherBits(morton >> 1), gatherBits(morton >> 2)); }
 
 // The lowest bit of each byte that is not 0.
 uint tilesIn(uint word) {

@@ -1,10 +1,7 @@
-// Averages over the fragments of each voxel, which do not depend on their order. Every occupied voxel has a slot of sums; a volume holds first
-// the number of fragments of a voxel and then the number of its slot, from 1 on, so that the sums need room for occupied voxels alone.
+// Averages over the fragments of each voxel, which do not depend on their order. Every occupied voxel has a slot of sums.
 #include "common/integer_mean.glsl"
-#include "common/voxel.glsl"
 
 layout(local_size_x = 64) in;
-#include "common/list.glsl"
 
 // The share that a fragment of coverage 1 adds to the sum of coverages of a voxel with so many.
 uint fullShare(uint fragments) { return shareOf(1.0 / float(fragments)); }

@@ -5,9 +5,8 @@
 #pragma lumivox require !EMISSION || ATTRIBUTES
 #define AVERAGING
 #include "average.glsl"
-#include "common/fragments.glsl"
+#include "toolkit/slot_of_voxel.glsl"
 
-layout(std430, binding = 4) readonly buffer FragmentsOfSlot { uint fragmentsOfSlot[]; };
 layout(std430, binding = 5) buffer CoverageSums { uint coverageSums[]; };
 #if ATTRIBUTES
 layout(std430, binding = 6) buffer AlbedoSums { uint albedoSums[]; };
@@ -17,14 +16,13 @@ layout(std430, binding = 7) buffer NormalSums { int normalSums[]; };
 layout(std430, binding = 8) buffer EmissionSums { uint emissionSums[]; };
 layout(std430, binding = 9) readonly buffer Brightest { uint brightest[]; };
 #endif
-layout(binding = 0, r32ui) uniform readonly uimage3D slots;
 
 void main() {
   uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
-  uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
-  if (slot >= uint(fragmentsOfSlot.length())) return;  // there was no room for its voxel: the frame is made anew
+  uint slot;
+  if (!slotOf(unpackVoxel(fragment.voxel), slot)) return;
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   float covered = clamp(blueCoverage.y, 0.0, 1.0), weight = covered / float(fragmentsOfSlot[slot]);
   uint full = fullShare(fragmentsOfSlot[slot]);

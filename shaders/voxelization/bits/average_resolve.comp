@@ -6,10 +6,8 @@
 #pragma lumivox require !EMISSION || ATTRIBUTES
 #define AVERAGING
 #include "average.glsl"
+#include "toolkit/slots.glsl"
 
-layout(std430, binding = 2) readonly buffer SlotCount { uint slotCount; };
-layout(std430, binding = 3) readonly buffer SlotVoxels { uint slotVoxels[]; };
-layout(std430, binding = 4) readonly buffer FragmentsOfSlot { uint fragmentsOfSlot[]; };
 layout(std430, binding = 5) readonly buffer CoverageSums { uint coverageSums[]; };
 #if ATTRIBUTES
 layout(std430, binding = 6) readonly buffer AlbedoSums { uint albedoSums[]; };
@@ -27,9 +25,9 @@ layout(binding = 3, r8) uniform writeonly image3D opacityImage;
 #endif
 
 void main() {
-  uint slot = listIndex();
-  if (slot >= slotCount) return;
-  ivec3 voxel = unpackVoxel(slotVoxels[slot]);
+  uint slot;
+  ivec3 voxel;
+  if (!slotHere(slot, voxel)) return;
   // Against what full coverages add up to, rounded as each of them was: a voxel that all of its fragments fill is opaque, exactly.
   uint fragments = fragmentsOfSlot[slot];
   float mean = float(coverageSums[slot]) / float(fragments * fullShare(fragments));

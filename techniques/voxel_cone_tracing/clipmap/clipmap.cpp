@@ -10,13 +10,14 @@
 #include <optional>
 #include <span>
 
-#include "../changed_cells.h"
 #include "../direct_light.h"
 #include "../voxel_sums.h"
 #include "clipmap_items.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/change_tracking.h"
+#include "lumivox/toolkit/counts.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -102,7 +103,7 @@ class ClipmapPass : public Pass {
                                 "radiance that the faces of voxels reflect, and opacity; levels as voxelized",
                                 Levels::finest};
 
-  Changes changes_;
+  ChangeTracking changes_;
   /// Fragments that lists are made for: a guess, or what earlier frames needed; of all levels, and of parts.
   std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
   /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
@@ -110,7 +111,6 @@ class ClipmapPass : public Pass {
   /// Triangles that are looked at before what is found of them is voxelized: bounds the list of it.
   static constexpr std::uint32_t kTrianglesAtOnce = 1u << 16;
   static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
-  static constexpr int kGroup = 64;  ///< invocations of passes over the list
 
  public:
   Reads readsFrom() const override {
@@ -188,7 +188,7 @@ class ClipmapPass : public Pass {
 
   LitBy litBy(PassContext& frame) const {
     // Nearer lights may send more than a level takes.
-    LitBy result{Changes::placementOf(frame, light.shadow, light.brightest(frame, 1.0f)), {}, {}};
+    LitBy result{lightPlacement(frame, light.shadow, light.brightest(frame, 1.0f)), {}, {}};
     if (light.media.present() && light.shadow.present())
       for (const ScatteringGrid::Medium& medium : light.media->media) {
         result.media.push_back(medium.density);
@@ -251,7 +251,7 @@ class ClipmapPass : public Pass {
     place(frame, state.clipmap, placement);
     tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
     state.clipmap.change.cells = moves && !all ? emptyChangedCells(frame, state.clipmap, placement,
-                                                                   Changes::atEither(*moving, *state.moving))
+                                                                   boundsAtEither(*moving, *state.moving))
                                                : nullptr;
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
@@ -331,17 +331,16 @@ class ClipmapPass : public Pass {
     }
     VoxelFragments fragments;
     fragments.grid = {placement.origin, placement.voxelSize, stack.size()};
-    fragments.workGroupSize = kGroup;
+    fragments.workGroupSize = kCountedGroupSize;
     fragments.capacity = room;
     fragments.coverage = isSampled() ? VoxelFragments::Coverage::sum : VoxelFragments::Coverage::mean;
-    fragments.count = frame.buffer(5 * sizeof(std::uint32_t), "voxel fragment count");
-    fragments.count->clear();
+    fragments.count = countBuffer(frame, "voxel fragment count");
     fragments.fragments = frame.elements(clipmap_voxelize::fragments, room, "voxel fragments of levels");
     gpu::BufferRef sideMasks;
     if (isSampled())
       sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
     voxelize(frame, fragments, sideMasks, stackBound, ranges, clipmap.change.cells);
-    finish(frame, fragments.count, room);
+    finishGuessed(frame, fragments.count, fragments.capacity, 0, room);
 
     OccupiedBricks occupied;
     VoxelSums sums = claimSums(frame, fragments, stack.size(), true, occupied);
@@ -411,21 +410,6 @@ class ClipmapPass : public Pass {
         variant.stage = clipmap_voxelize::Variant::stageLarge;
         frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
       }
-  }
-
-  /// Where a frame wanted more than there was room for, it is rendered again with an eighth more than that.
-  static void finish(PassContext& frame, const gpu::BufferRef& count, std::uint64_t& room) {
-    frame.dispatch(
-        frame.program(clipmap_finish::kProgram),
-        {clipmap_finish::room({static_cast<std::uint32_t>(room), kGroup}), clipmap_finish::count(count)},
-        {1, 1, 1});
-    constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);
-    frame.checkAfterFrame(count, kWantedOffset, [&room, had = room](PassContext&, std::uint32_t wanted) {
-      if (wanted > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", wanted));
-      if (wanted <= had) return true;
-      room = wanted + wanted / 8;
-      return false;
-    });
   }
 };
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <span>
 
-#include "../changed_cells.h"
 #include "../cones/march.h"
 #include "../direct_light.h"
 #include "../octree/octree.h"
@@ -16,6 +15,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/change_tracking.h"
 #include "lumivox/toolkit/media.h"
 #include "lumivox/toolkit/volume_room.h"
 
@@ -65,21 +65,18 @@ class Injection {
   struct KeptGrid {
     std::vector<gpu::TextureRef> textures;
     ChangedBricks changed{std::make_shared<ChangedBricks::Levels>(), 0, {}};
-    /// Of the frame before: bounds of what moved, the cells of its fragments, and the occupied voxels.
-    std::vector<Bounds> moving;
-    gpu::BufferRef movingCells, bricks;
-    CellFragments still;
+    // Of the frame before.
+    gpu::BufferRef bricks;  ///< occupied voxels
+    LitMoment moment;
   };
 
   /// As long as static geometry and the lights on it stay where they are; null where that is not known.
   template <class MakeRooms>
   std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, const Bounces& bounces, MakeRooms&& makeRooms) {
     // Every bounce changes all of the light.
-    if (bounces.count() > 1 || !knowsStill() || !changes_.moving(frame)) return nullptr;
-    float unit = 1.0f;
-    const auto key =
-        std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightestOf(frame, unit)));
-    return frame.kept("voxels of static geometry in unchanged light", key, [&] {
+    const std::optional<StaticLight> key = bounces.count() == 1 ? staticLight(frame) : std::nullopt;
+    if (!key) return nullptr;
+    return frame.kept("voxels of static geometry in unchanged light", *key, [&] {
       auto result = std::make_shared<KeptGrid>();
       result->textures = makeRooms();
       return result;
@@ -101,7 +98,7 @@ class Injection {
     ChangedCells changed;
     VoxelSums sums;
     if (onlyChanges) {
-      changed = changesOf(frame, *kept);
+      changed = changes_.since(frame, *fragments_, light_.shadow, kept->moment);
       sums = claimChanged(frame, *fragments_, result.grid.resolution, textures.size() > 1, changed,
                           kept->bricks, occupied, kept->changed.bricks);
     } else {
@@ -126,9 +123,8 @@ class Injection {
     result.filledLevels = 1;
     if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
     if (kept == nullptr) return;
-    if (!onlyChanges) kept->movingCells = Changes::movingCells(frame, *fragments_).bits;
+    if (!onlyChanges) kept->moment = changes_.momentOfAll(frame, *fragments_);
     kept->bricks = sums.bricks;
-    kept->moving = *changes_.moving(frame);
     ++kept->changed.number;
     result.changed = kept->changed;
   }
@@ -146,7 +142,7 @@ class Injection {
           "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
     const float brightest = brightestOf(frame, result.unit, bounces.count());
     // Every bounce changes all of the light.
-    if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
+    if (bounces.count() == 1) result.still = stillIn(frame, result);
     const VoxelSums sums = leafSums(frame, result);
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
     resolveLeaves(frame, result, sums, addsUp());
@@ -170,58 +166,41 @@ class Injection {
   Param<bool> storeMedia_;
   Param<Precision> precision_;
 
-  /// Static geometry in the light of one moment, and what moved in that light.
-  struct StillLight {
+  ChangeTracking changes_;
+
+  /// Nothing where more changes the light on static geometry than the shadows of what moves.
+  std::optional<StaticLight> staticLight(PassContext& frame) {
+    float unit = 1.0f;
+    if (light_.media.present()) return std::nullopt;
+    return changes_.staticLight(frame, *fragments_, light_.shadow, brightestOf(frame, unit));
+  }
+
+  /// Static geometry in the light of one moment.
+  struct StillOctree {
     std::shared_ptr<const RadianceOctree> octree;
-    std::vector<Bounds> moving;
-    CellFragments cells;
+    LitMoment moment;
   };
-  Changes changes_;
-  /// Of the frame before: only what did not change in it is worth keeping.
-  std::pair<gpu::BufferRef, LightPlacement> before_;
+  std::optional<StaticLight> before_;  ///< of the frame before: only what did not change is worth keeping
 
-  /// Whether what stands still is known apart, and light on it changes only in the shadows of what moves.
-  bool knowsStill() const {
-    return fragments_->still != nullptr && !light_.media.present() && fragments_->reflected == nullptr;
-  }
-
-  /// What has changed since the frame before: both that moves now and what did then.
-  ChangedCells changesOf(PassContext& frame, KeptGrid& kept) {
-    if (kept.still.ends == nullptr) kept.still = sortedByCells(frame, stillOf(*fragments_));
-    return Changes::cells(frame, *fragments_, kept.still, light_.shadow,
-                          Changes::atEither(*changes_.moving(frame), kept.moving), &kept.movingCells);
-  }
-
-  /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
-  /// where they have moved in this frame.
-  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, int faces,
-                                       float brightest) {
-    if (tree.still == nullptr || !knowsStill()) return {};
-    auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
-    const bool stays = key == before_;
-    before_ = key;
-    const auto moving = changes_.moving(frame);
-    if (!stays || !moving) return {};
-    return frame.kept("light of static geometry", key, [&] {
-      RadianceOctree still;
-      still.tree = *tree.still;
-      still.faces = faces;
-      brightestOf(frame, still.unit);
-      const VoxelSums sums = leafSums(frame, still);
-      average(frame, stillOf(*fragments_), sums, brightest);
-      resolveLeaves(frame, still, sums, addsUp());
-      return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
-                        sortedByCells(frame, stillOf(*fragments_))};
+  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known,
+  /// or where it or the lights have moved in this frame.
+  std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree) {
+    const std::optional<StaticLight> key = octree.tree.still ? staticLight(frame) : std::nullopt;
+    if (std::exchange(before_, key) != key || !key) return nullptr;
+    const StillOctree& still = frame.kept("light of static geometry", *key, [&] {
+      RadianceOctree lit;
+      lit.tree = *octree.tree.still;
+      lit.faces = octree.faces;
+      const float brightest = brightestOf(frame, lit.unit);
+      const VoxelSums sums = leafSums(frame, lit);
+      average(frame, staticOf(*fragments_), sums, brightest);
+      resolveLeaves(frame, lit, sums, addsUp());
+      return StillOctree{std::make_shared<const RadianceOctree>(lit),
+                         changes_.momentOfStatic(frame, *fragments_)};
     });
-  }
-
-  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known.
-  std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
-    const std::optional<StillLight> still = stillLight(frame, octree.tree, octree.faces, brightest);
-    if (!still) return nullptr;
-    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow,
-                                    Changes::atEither(*changes_.moving(frame), still->moving));
-    return still->octree;
+    LitMoment moment = still.moment;
+    octree.changed = changes_.since(frame, *fragments_, light_.shadow, moment);
+    return still.octree;
   }
 
   VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {

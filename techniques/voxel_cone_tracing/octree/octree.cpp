@@ -10,10 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "../changed_cells.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/bit_tree.h"
+#include "lumivox/toolkit/change_tracking.h"
+#include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/room.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -48,7 +50,7 @@ TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
   const bool own = tree.bricksAre == VoxelOctree::Bricks::own;
   const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)], all = tree.brickRoom,
                       records = tree.recordRoom * bricks / all;
-  return {firstTagWord(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
+  return {wordsBeforeDepth(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
           bricks * VoxelOctree::kBrickBytes +
               records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
 }
@@ -89,7 +91,8 @@ void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& 
 
 shader::BindingSet stillBinding(const RadianceOctree& octree) {
   if (octree.still == nullptr) return {};
-  return {bindingOf(octree.changed, octree.still->poolShift),
+  return {octree.changed.bindings(),
+          shader::UniformSlot<octree_filter::StillBricks>{"StillBricks"}({octree.still->poolShift}),
           shader::StorageSlot{"StillRanks"}(octree.still->tree.ranks),
           shader::SampledSlot{"stillPool"}(octree.still->radiance, gpu::Sampling::nearest)};
 }
@@ -173,7 +176,7 @@ class OctreePass : public Pass {
   Still nodesOfStill(PassContext& frame) {
     auto [result, tags] = placed(frame, stillRoom_, stillRoomBefore_);
     Still still{tags, nullptr};
-    mark(frame, result, stillOf(*fragments), still.tags, {});
+    mark(frame, result, staticOf(*fragments), still.tags, {});
     write(frame, result, still.tags, stillRoom_);
     judge(frame, result, stillRoom_);
     still.tree = std::make_shared<const VoxelOctree>(result);
@@ -223,7 +226,7 @@ class OctreePass : public Pass {
     return {result, tags};
   }
 
-  static std::uint64_t wordsOf(const VoxelOctree& result) { return firstTagWord(result.depth + 1); }
+  static std::uint64_t wordsOf(const VoxelOctree& result) { return wordsBeforeDepth(result.depth + 1); }
 
   static void mark(PassContext& frame, const VoxelOctree& result, const VoxelFragments& list,
                    const Tags& tags, const octree_mark::Variant& variant) {
@@ -231,7 +234,7 @@ class OctreePass : public Pass {
                                                     .voxels = static_cast<int>(result.voxels),
                                                     .own = result.bricksAre == Bricks::own}),
                                 octree_mark::tags(tags.nodes), octree_mark::shown(tags.shown)};
-    if (variant.moving != 0) bindings.add(behindStill(list));
+    if (variant.moving != 0) bindings.add(bindStaticCount(list));
     forEachFragment(frame, frame.program(variant), bindings, list);
   }
 
@@ -247,9 +250,7 @@ class OctreePass : public Pass {
                        {octree_count::words({wordCount, own}), octree_count::tags(tags.nodes),
                         octree_count::shown(tags.shown), octree_count::chunkCounts(counts)},
                        chunks);
-    frame.dispatch(frame.program(octree_scan::kProgram),
-                   {octree_scan::chunks({static_cast<int>(chunks)}), octree_scan::chunkCounts(counts), bound},
-                   {1, 1, 1});
+    scan(frame, counts, chunks, 2, result.levels);  // which begins with the bricks and tiles that are wanted
     frame.dispatchList(frame.program(octree_rank::kProgram),
                        {octree_rank::words({wordCount, own}), octree_rank::tags(tags.nodes),
                         octree_rank::shown(tags.shown), octree_rank::chunkCounts(counts),

@@ -12,6 +12,7 @@
 #include "../dense/directional_grid.h"
 #include "lumivox/pipeline/port.h"
 #include "lumivox/pipeline/ports.h"
+#include "lumivox/toolkit/change_tracking.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -88,14 +89,6 @@ struct OctreeBrickList {
     }
     return result;
   }
-};
-
-/// A bit for each cell of 8 x 8 x 8 voxels whose fragments or whose light may differ from those of static
-/// geometry, and for what lies above them in a tree over the grid (changed_cells.glsl).
-struct ChangedCells {
-  gpu::BufferRef bits;
-  gpu::BufferRef fragments, count;    ///< those in changed cells: their places in the list; how many
-  int cellDepth = 0, voxelDepth = 0;  ///< in that tree, whose root is at depth 0
 };
 
 /// Pre-filtered outgoing radiance in the bricks of an octree, pre-multiplied by opacity.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bit_voxelizer.h"
+#include "lumivox/toolkit/voxel_slots.h"
 
 namespace lumivox::voxelization {
 
@@ -25,11 +26,7 @@ class AveragePass : public Pass {
   std::uint64_t room_ = 0;  ///< slots that there is room for: a guess, or what earlier frames needed
 
   void sumAndResolve(PassContext& frame) {
-    const VoxelSlots slots =
-        claimSlots(frame, *fragments,
-                   {frame.program(average_claim::kProgram), frame.program(average_number::kProgram),
-                    frame.program(finish::kProgram)},
-                   room_);
+    const VoxelSlots slots = claimSlots(frame, *fragments, room_);
     const GridPlacement& grid = fragments->grid;
     const int withAttributes = attributes.wanted(), withEmission = withAttributes && frame.traits().emission;
     using namespace average_add;
@@ -51,26 +48,23 @@ class AveragePass : public Pass {
     if (withEmission) {
       averages.emission = frame.emptyVolume(grid.resolution, gpu::Format::rgba32f, "mean emission");
       forEachFragment(frame, frame.program(average_brightest::kProgram),
-                      {average_brightest::brightest(brightest), average_brightest::slots(slots.numbers)},
-                      *fragments);
+                      {average_brightest::brightest(brightest), SlotBinding(slots)}, *fragments);
     }
     if (opacity.wanted() || judgesSums())
       covered.opacity = frame.emptyVolume(grid.resolution, gpu::Format::r8, "opacity");
     const shader::BindingSet sums{
         averaging({grid.resolution, fragments->coverage == VoxelFragments::Coverage::sum}),
-        fragmentsOfSlot(slots.fragments),
         coverageSums(coverage),
         albedoSums(albedo),
         normalSums(normal),
         emissionSums(emission),
         average_add::brightest(brightest)};
     forEachFragment(frame, frame.program(average_add::Variant{withAttributes, withEmission}),
-                    {sums, average_add::slots(slots.numbers)}, *fragments);
+                    {sums, SlotBinding(slots)}, *fragments);
     const average_resolve::Variant resolving{withAttributes, withEmission, covered.opacity != nullptr};
     forEachSlot(
         frame, frame.program(resolving),
-        {sums, average_resolve::slotCount(slots.count), average_resolve::slotVoxels(slots.voxels),
-         average_resolve::albedoImage(averages.albedo), average_resolve::normalImage(averages.normal),
+        {sums, average_resolve::albedoImage(averages.albedo), average_resolve::normalImage(averages.normal),
          average_resolve::emissionImage(averages.emission), average_resolve::opacityImage(covered.opacity)},
         slots);
     if (withAttributes) attributes = averages;

@@ -1,4 +1,5 @@
-// A whole program: the number of fragments moves from the volume to the slot, and the volume tells the slot's number.
+#version 450
+// The number of fragments moves from the volume to the slot, and the volume tells the slot's number.
 // C++ side: claimSlots() in framework/include/lumivox/toolkit/voxel_slots.h.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

@@ -1,9 +1,10 @@
 // Whether light may come to a box otherwise: it lies in a shadow view behind something that moves.
+// C++ side: BoxesInViews in framework/include/lumivox/toolkit/change_tracking.h.
 #ifndef LUMIVOX_SHADOWED_ANEW
 #define LUMIVOX_SHADOWED_ANEW
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
-#include "changed_light.glsl"
+#include "boxes_in_views.glsl"
 
 layout(std430, binding = 1) readonly buffer Casts { Cast casts[]; };  // of each view the boxes of what moves (changed_views.comp)
 

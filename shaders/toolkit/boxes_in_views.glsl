@@ -1,6 +1,6 @@
 // Boxes in the shadow views of lights.
-#ifndef LUMIVOX_CHANGED_LIGHT
-#define LUMIVOX_CHANGED_LIGHT
+#ifndef LUMIVOX_BOXES_IN_VIEWS
+#define LUMIVOX_BOXES_IN_VIEWS
 
 // What a box covers of one view.
 struct Cast {

@@ -1,5 +1,6 @@
-// The fragments that a shader takes: all of a list, or (CHANGED) only those that changed_mark.comp and changed_list.comp list. Included
-// after the local size, which is along x alone.
+// The fragments that a shader takes: all of a list, or (CHANGED) only those in changed cells. Included after the local size, which is along
+// x alone.
+// C++ side: forEachFragment(), forEachChanged() in framework/include/lumivox/toolkit/.
 #ifndef LUMIVOX_TAKEN_FRAGMENTS
 #define LUMIVOX_TAKEN_FRAGMENTS
 #pragma lumivox axis CHANGED 0 1

@@ -1,6 +1,7 @@
-// A whole program: turns a number of items into the arguments of a dispatch over them, so that no pass waits for the count to travel to the
-// host. Items beyond the room are cut off; the wanted number is kept, and the host reads it after the frame. C++ side: finishCount() in
-// framework/include/lumivox/toolkit/voxel_slots.h.
+#version 450
+// Turns a number of items into the arguments of a dispatch over them, so that no pass waits for the count to travel to the host. What there
+// was no room for is cut off; how many were wanted is kept, for the host to look at when the frame is done.
+// C++ side: finishCount() in framework/include/lumivox/toolkit/counts.h.
 layout(local_size_x = 1) in;
 #include "common/list.glsl"
 
@@ -9,7 +10,7 @@ layout(std430, binding = 0) buffer Count {
   uint groupsX, groupsY, groupsZ;
   uint wanted;
 };
-layout(std140, binding = 0) uniform FinishCount {
+layout(std140, binding = 0) uniform Finish {
   int capacity;
   int workGroupSize;
 };

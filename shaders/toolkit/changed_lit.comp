@@ -1,6 +1,6 @@
 #version 450
 // Finds the cells to which light may come otherwise: those that lie in a shadow view behind something that moves. A cell that is found is
-// lit anew and nothing else, so that it does no harm to find too many.
+// lit again and nothing else, so that it does no harm to find too many.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #define CHANGES_BUILD

@@ -3,7 +3,7 @@
 layout(local_size_x = 64) in;
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
-#include "changed_light.glsl"
+#include "boxes_in_views.glsl"
 
 layout(std140, binding = 0) uniform Boxes { int boxCount, layerCount; };
 struct Box {

@@ -1,5 +1,5 @@
-// A whole program: counts the fragments of each voxel; the first one there claims a slot for it. The volume holds numbers of fragments until
-// slots_number.glsl.
+#version 450
+// Counts the fragments of each voxel; the first one there claims a slot for it. The volume holds numbers of fragments until number.comp.
 // C++ side: claimSlots() in framework/include/lumivox/toolkit/voxel_slots.h.
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"

@@ -1,14 +1,13 @@
-// Where the light or the fragments of voxels may differ from those of static geometry as it was lit once: a bit for each cell of 8 x 8 x 8
-// voxels, and for what lies above them (octree_tags.glsl). What has not changed need not be lit, averaged or filtered anew.
-// C++ side: ChangedCells in techniques/voxel_cone_tracing/changed_cells.h.
+// Where the light or the fragments of voxels may differ from those of static geometry as it was lit once: a bit for each cell of voxels, and
+// for what lies above the cells. What has not changed need not be lit, averaged or filtered again.
+// C++ side: ChangedCells in framework/include/lumivox/toolkit/change_tracking.h.
 #ifndef LUMIVOX_CHANGED_CELLS
 #define LUMIVOX_CHANGED_CELLS
-#include "octree/octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 layout(std140, binding = 5) uniform Changes {
   int cellDepth;   // of cells, in a tree over the grid whose root is at depth 0
   int voxelDepth;  // of the finest voxels in that tree
-  int stillShift;  // octree: the pool of static geometry has 2 to the power of this bricks along x and along y
 };
 #ifdef CHANGES_BUILD
 #define CHANGES_ACCESS

@@ -1,2 +1,0 @@
-#version 450
-#include "common/slots_claim.glsl"
