@@ -39,7 +39,7 @@ std::map<Cell, glm::vec4> voxelsOf(const RadianceOctree& octree, int face, int l
   for (const auto& [place, voxels] : bricksOf(octree, level, face))
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::vec4& value = voxels[static_cast<std::size_t>(local.x + 3 * local.y + 9 * local.z)];
+      const glm::vec4& value = voxels[static_cast<std::size_t>(corner)];
       if (value.w > 0.0f) result[cellOf(2 * glm::ivec3(place[0], place[1], place[2]) + local)] = value;
     }
   return result;
@@ -47,24 +47,21 @@ std::map<Cell, glm::vec4> voxelsOf(const RadianceOctree& octree, int face, int l
 
 /// An octree over a grid of [-1,1]^3 with all levels, whose finest voxels `fill` gives by face and voxel, as
 /// makeDirections takes them; only where it is above 0 for some face there are leaves.
-RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int, int, int, int)>& fill,
-                        const char* bricks = "own") {
+RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int, int, int, int)>& fill) {
   const auto isSomething = [&](const glm::ivec3& at) {
     bool found = false;
     for (int face = 0; face < 6; ++face) found = found || fill(face, at.x, at.y, at.z).w > 0.0f;
     return glm::vec4(found ? 1.0f : 0.0f);
   };
   const glm::ivec3 size(resolution);
-  RadianceOctree octree =
-      leavesOf(listOf(fragmentsWhere(size, isSomething), size), "as_grid", "float", bricks, "six");
+  RadianceOctree octree = leavesOf(listOf(fragmentsWhere(size, isSomething), size), "float", "six");
   const gpu::TextureDescription& pool = octree.radiance->description();
   std::vector<float> texels = octree.radiance->downloadFloats(0);
   for (const auto& brick : OctreeBrickList::of(octree.tree, 0).bricks)
-    for (int i = 0; i < octree.tree.brickVoxels() * 6; ++i) {
-      const int side = octree.tree.brickSide(), face = i / octree.tree.brickVoxels(),
-                lane = i % octree.tree.brickVoxels();
-      const glm::ivec3 local(lane % side, lane / side % side, lane / (side * side)),
-          at = octree.texelOf(brick.index, face) + local, voxel = 2 * brick.place + local;
+    for (int i = 0; i < 6 * VoxelOctree::kBrickVoxels; ++i) {
+      const int face = i / VoxelOctree::kBrickVoxels;
+      const glm::ivec3 local(i & 1, i >> 1 & 1, i >> 2 & 1), at = octree.texelOf(brick.index, face) + local,
+                                                             voxel = 2 * brick.place + local;
       const glm::vec4 value = glm::any(glm::greaterThanEqual(voxel, size))
                                   ? glm::vec4(0.0f)
                                   : fill(face, voxel.x, voxel.y, voxel.z);
@@ -90,16 +87,12 @@ glm::vec3 along(const Store& store, const glm::vec3& position, const glm::vec3& 
 }  // namespace
 
 TEST_CASE("faces of the octree's voxels are those of six directional grids, at every level halved evenly") {
-  struct Stored {
-    const char *precision, *bricks;
-  };
   for (const Scene& scene : {cornell(), loadScene(sourceDirectory() / "scenes/untuned/room.scene")})
-    for (const auto& [precision, bricks] :
-         {Stored{"float", "own"}, Stored{"half", "own"}, Stored{"float", "published"}}) {
+    for (const char* precision : {"float", "half"}) {
       InjectSettings settings;
       settings.precision = precision;
       const DirectionalRadianceGrid dense = filteredDirections(injectedDirections(scene, 32, settings));
-      const RadianceOctree sparse = filteredOctree(injectedOctree(scene, 32, settings, "six", bricks));
+      const RadianceOctree sparse = filteredOctree(injectedOctree(scene, 32, settings, "six"));
       CHECK(dense.unit == sparse.unit);
       std::size_t compared = 0;
       for (int level = 0; level <= sparse.tree.depth; ++level) {
@@ -107,20 +100,9 @@ TEST_CASE("faces of the octree's voxels are those of six directional grids, at e
         if (size * (1 << level) != dense.grid.resolution) break;
         for (int face = 0; face < 6; ++face) {
           const auto expected = voxelsOf(dense, face, level), found = voxelsOf(sparse, face, level);
-          CAPTURE(precision, bricks, level, face, expected.size(), found.size());
+          CAPTURE(precision, level, face, expected.size(), found.size());
           CHECK((found == expected));
           compared += expected.size();
-          if (sparse.tree.brickSide() == 2) continue;
-          // What published bricks hold of their neighbours is what those hold.
-          std::size_t wrong = 0;
-          for (const auto& [place, voxels] : bricksOf(sparse, level, face))
-            for (int i = 0; i < 27; ++i) {
-              const auto owned = found.find(
-                  cellOf(2 * glm::ivec3(place[0], place[1], place[2]) + glm::ivec3(i % 3, i / 3 % 3, i / 9)));
-              wrong += voxels[static_cast<std::size_t>(i)] !=
-                       (owned == found.end() ? glm::vec4(0.0f) : owned->second);
-            }
-          CHECK(wrong == 0);
         }
       }
       CHECK(compared > 6 * 1000);
@@ -135,16 +117,13 @@ TEST_CASE("children of a column in a brick are composited as seen from each side
     if (y == 0) return x == 0 ? glm::vec4(0.5f, 0, 0, 0.5f) : glm::vec4(0, 1, 0, 1);
     return x == 1 ? glm::vec4(0, 1, 0, 1) : glm::vec4(0.0f);
   };
-  for (const char* bricks : {"own", "published"}) {
-    const RadianceOctree octree = octreeOf(4, fill, bricks);
-    const auto at = [&](int face) { return bricksOf(octree, 1, face).at({0, 0, 0})[0]; };
-    CAPTURE(bricks);
-    checkNear(at(kLowerX), {0.125f, 0.375f, 0, 0.5f});
-    checkNear(at(kHigherX), {0, 0.5f, 0, 0.5f});
-    checkNear(at(kLowerY), {0.125f, 0.25f, 0, 0.375f});
-    checkNear(at(kHigherY), {0.125f, 0.25f, 0, 0.375f});
-    checkNear(at(kHigherZ), {0.125f, 0.5f, 0, 0.625f});
-  }
+  const RadianceOctree octree = octreeOf(4, fill);
+  const auto at = [&](int face) { return bricksOf(octree, 1, face).at({0, 0, 0})[0]; };
+  checkNear(at(kLowerX), {0.125f, 0.375f, 0, 0.5f});
+  checkNear(at(kHigherX), {0, 0.5f, 0, 0.5f});
+  checkNear(at(kLowerY), {0.125f, 0.25f, 0, 0.375f});
+  checkNear(at(kHigherY), {0.125f, 0.25f, 0, 0.375f});
+  checkNear(at(kHigherZ), {0.125f, 0.5f, 0, 0.625f});
 }
 
 TEST_CASE(
@@ -154,31 +133,28 @@ TEST_CASE(
   const auto paint = [](int, int x, int, int) {
     return x == 16 ? glm::vec4(1, 0, 0, 1) : x == 17 ? glm::vec4(0, 1, 0, 1) : glm::vec4(0.0f);
   };
-  for (const std::string bricks : {"own", "published"}) {
-    const RadianceOctree octree = octreeOf(kResolution, paint, bricks.c_str());
-    for (int level = 1; level <= octree.tree.depth; ++level) {
-      std::size_t seen = 0;
-      const auto lower = voxelsOf(octree, kLowerX, level), higher = voxelsOf(octree, kHigherX, level);
-      for (const auto& [voxel, value] : lower) {
-        CAPTURE(bricks, level, voxel[0], voxel[1]);
-        CHECK(voxel[0] == 16 >> level);
-        checkNear(value, {1, 0, 0, 1});
-        checkNear(higher.at(voxel), {0, 1, 0, 1});
-        ++seen;
-      }
-      const auto side = static_cast<std::size_t>(kResolution >> level);
-      CHECK(seen == side * side);
+  const RadianceOctree octree = octreeOf(kResolution, paint);
+  for (int level = 1; level <= octree.tree.depth; ++level) {
+    std::size_t seen = 0;
+    const auto lower = voxelsOf(octree, kLowerX, level), higher = voxelsOf(octree, kHigherX, level);
+    for (const auto& [voxel, value] : lower) {
+      CAPTURE(level, voxel[0], voxel[1]);
+      CHECK(voxel[0] == 16 >> level);
+      checkNear(value, {1, 0, 0, 1});
+      checkNear(higher.at(voxel), {0, 1, 0, 1});
+      ++seen;
     }
-    if (bricks == "published") continue;  // cones read six faces in own bricks alone
-    for (const float side : {-1.0f, 1.0f})
-      for (const float tilt : {0.0f, 1.0f}) {
-        const glm::vec3 seen =
-            along(octree, {0.03f + 0.4f * side, 0, 0}, {-side, tilt, 0.3f * tilt}, 400.0f, {});
-        CAPTURE(side, tilt);
-        CHECK((side < 0 ? seen.r : seen.g) == Approx(1.0).epsilon(1e-3));
-        CHECK((side < 0 ? seen.g : seen.r) < 1e-3f);
-      }
+    const auto side = static_cast<std::size_t>(kResolution >> level);
+    CHECK(seen == side * side);
   }
+  for (const float side : {-1.0f, 1.0f})
+    for (const float tilt : {0.0f, 1.0f}) {
+      const glm::vec3 seen =
+          along(octree, {0.03f + 0.4f * side, 0, 0}, {-side, tilt, 0.3f * tilt}, 400.0f, {});
+      CAPTURE(side, tilt);
+      CHECK((side < 0 ? seen.r : seen.g) == Approx(1.0).epsilon(1e-3));
+      CHECK((side < 0 ? seen.g : seen.r) < 1e-3f);
+    }
 }
 
 TEST_CASE("a uniform octree of six faces returns L (1 - (1-a)^(d / voxel)) by either reading") {
@@ -233,7 +209,7 @@ TEST_CASE("cones see in an octree of six faces what they see in six grids, in an
     return glm::vec4(opacity * glm::vec3(0.1f + 0.2f * static_cast<float>(face), 0.5f, 0.25f), opacity);
   };
   const DirectionalRadianceGrid dense = filteredDirections(makeDirections(kResolution, fill));
-  const RadianceOctree octree = octreeOf(kResolution, fill, "own");
+  const RadianceOctree octree = octreeOf(kResolution, fill);
   for (const char* reading : {"layers", "interpolated"})
     for (int i = 0; i < 24; ++i) {
       const glm::vec3 apex(-1.2f + 0.1f * static_cast<float>(i), 0.9f - 0.08f * static_cast<float>(i),
@@ -312,16 +288,10 @@ TEST_CASE("what is exported of an octree of six faces is what six grids export")
   }
 }
 
-TEST_CASE("six faces are refused where voxels do not lie as in a grid, and by rules that have no sides") {
+TEST_CASE("six faces are refused by rules that have no sides") {
   const VoxelFragments list = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
-  for (const char* voxels : {"at_corners", "in_leaves"})
-    CHECK_THROWS_WITH(leavesOf(list, voxels, "float", "published", "six"),
-                      Catch::Matchers::Contains("expected 'voxels as_grid'"));
-  CHECK_THROWS_WITH(filteredOctree(leavesOf(list, "as_grid", "float", "own", "six"), "average"),
+  CHECK_THROWS_WITH(filteredOctree(leavesOf(list, "float", "six"), "average"),
                     Catch::Matchers::Contains("expected 'opacity facing'"));
-  const RadianceOctree published = filteredOctree(leavesOf(list, "as_grid", "float", "published", "six"));
-  CHECK_THROWS_WITH(gather(emptyScene(), published, glm::vec3(0.0f), {0, 1, 0}, {}),
-                    Catch::Matchers::Contains("expected 'bricks own'"));
 }
 
 TEST_CASE("an octree of six faces that does not fit is refused with what it takes, all faces counted") {

@@ -1,5 +1,5 @@
 #version 450
-// From the counts of chunks how many nodes and tiles lie before each, and how many there are. One work group.
+// From the counts of chunks how many nodes, and nodes that are shown, lie before each, and how many there are. One work group.
 #define OCTREE_BUILD
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
@@ -21,7 +21,7 @@ void main() {
   for (uint i = 0u; i < thread; ++i) before += parts[i];
   if (thread == 63u) {
     wantedBricks = before.x + sum.x;
-    wantedTiles = before.y + sum.y;
+    wantedShown = before.y + sum.y;
   }
   for (uint i = first; i < last; ++i) {
     uvec2 count = chunkCounts[i];

@@ -1,5 +1,5 @@
 // A bit for each node that could be, set where there is one: so all nodes are counted, and room is made for them, before any is written. The
-// bits of a depth follow each other along a Morton curve, so that a tile of eight nodes is a byte.
+// bits of a depth follow each other along a Morton curve.
 #ifndef LUMIVOX_OCTREE_TAGS
 #define LUMIVOX_OCTREE_TAGS
 
@@ -28,12 +28,6 @@ uint gatherBits(uint x) {
 uint mortonOf(ivec3 place) { return spreadBits(uint(place.x)) | spreadBits(uint(place.y)) << 1 | spreadBits(uint(place.z)) << 2; }
 ivec3 placeOf(uint morton) { return ivec3(gatherBits(morton), gatherBits(morton >> 1), gatherBits(morton >> 2)); }
 
-// The lowest bit of each byte that is not 0.
-uint tilesIn(uint word) {
-  word |= word >> 4;
-  word |= word >> 2;
-  return (word | word >> 1) & 0x01010101u;
-}
 uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
 
 // Tags beside the number of nodes before them, which is that of the first one's brick.
