@@ -9,8 +9,7 @@
 #include "octree/octree_ranks.glsl"
 
 uint sumsAt(ivec3 voxel) {
-  // Where the tree was built as published there are no ranks.
-  uint brick = octreeRanked != 0 ? rankedBrick(mortonOf(voxel >> 1), octreeDepth) : brickAt(voxel >> 1, octreeDepth);
+  uint brick = rankedBrick(mortonOf(voxel >> 1), octreeDepth);
   if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return 0u;  // there was too little room, and the frame is not shown
   ivec3 own = voxel & 1;
   return 8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(own.x | own.y << 1 | own.z << 2);

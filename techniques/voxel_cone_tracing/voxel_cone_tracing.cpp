@@ -5,7 +5,6 @@
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
-void addInjectAsPublished(TechniqueRegistry& registry);
 void addFilter(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
@@ -26,7 +25,6 @@ LUMIVOX_TECHNIQUE(registry) {
       "Voxel cone tracing through dense grids, a sparse octree or a clipmap, with one value a voxel or six faces",
       "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
-  addInjectAsPublished(registry);
   addFilter(registry);
   addFilterDirectional(registry);
   addLobes(registry);

@@ -5,14 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "../../techniques/voxel_cone_tracing/dense/directional_grid.h"
 #include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/ports/directional_radiance_grid.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
 namespace lumivox::test::cones {
-
-using voxel_cone_tracing::DirectionalRadianceGrid;
 
 inline constexpr int kPixels = 8;  ///< along both sides of the images here
 
@@ -131,7 +129,6 @@ struct GatherSettings {
   const char* distribution = "cosine";
   double offset = 0, start = 0, reach = 0, step = 0.25;
   double clearance = 0.5, footprint = 0.5;  // the defaults of the pass
-  bool asPublished = false;
   double coneRatio = 1.1547005383792515;
   double jitter = 0;
   std::uint64_t seed = 1;
@@ -139,7 +136,6 @@ struct GatherSettings {
   double refinement = 1;
   int pattern = 1, glossyCones = 1;
   const char* resolution = "full";
-  const char* lookUp = "ranks";
 };
 
 /// Which input of the cones a store is.
@@ -163,7 +159,6 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("step", settings.step);
   harness.setParameter("clearance", settings.clearance);
   harness.setParameter("footprint", settings.footprint);
-  harness.setParameter("as_published", std::string(settings.asPublished ? "on" : "off"));
   harness.setParameter("cone_ratio", settings.coneRatio);
   harness.setParameter("jitter", settings.jitter);
   harness.setParameter("reading", std::string(settings.reading));
@@ -171,7 +166,6 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("pattern", settings.pattern);
   harness.setParameter("glossy_cones", settings.glossyCones);
   harness.setParameter("resolution", std::string(settings.resolution));
-  harness.setParameter("look_up", std::string(settings.lookUp));
   harness.setInput("gbuffer", gbuffer);
   harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);

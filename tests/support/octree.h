@@ -29,11 +29,6 @@ using voxel_cone_tracing::VoxelOctree;
 
 inline constexpr std::uint32_t kNone = ~0u;
 
-struct NodeData {
-  std::uint32_t children, brick;
-  std::array<std::uint32_t, 3> neighbours;
-};
-
 inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo = glm::vec3(0.5f),
                                float coverage = 1.0f) {
   FragmentData result{};
@@ -61,35 +56,18 @@ inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const g
   return list;
 }
 
-inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "as_grid",
-                          bool asPublished = false, const char* bricks = "own") {
+inline VoxelOctree treeOf(const VoxelFragments& list) {
   const Scene scene = cones::emptyScene();
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
-  harness.setParameter("voxels", std::string(voxels));
-  harness.setParameter("as_published", std::string(asPublished ? "on" : "off"));
-  harness.setParameter("bricks", std::string(bricks));
   harness.setInput("fragments", list);
   harness.run();
   return harness.output<VoxelOctree>("tree");
 }
 
-/// Bricks wanted and tiles wanted.
+/// Bricks wanted, and nodes in which reading finds something.
 inline std::array<std::uint32_t, 2> wantedOf(const VoxelOctree& tree) {
   const auto words = tree.levels->downloadValues<std::uint32_t>();
   return {words.at(0), words.at(1)};
-}
-
-/// The node that is found from the root at a place of a level; kNone: none.
-inline std::uint32_t nodeAt(const std::vector<NodeData>& nodes, const VoxelOctree& tree, int level,
-                            const glm::ivec3& place) {
-  std::uint32_t node = 0;
-  for (int below = tree.depth - level - 1; below >= 0; --below) {
-    if (nodes.at(node).children == kNone) return kNone;
-    node = nodes.at(node).children + static_cast<std::uint32_t>((place.x >> below & 1) |
-                                                                (place.y >> below & 1) << 1 |
-                                                                (place.z >> below & 1) << 2);
-  }
-  return nodes.at(node).brick == kNone ? kNone : node;
 }
 
 inline Cell cellOf(const glm::ivec3& place) {
@@ -98,19 +76,17 @@ inline Cell cellOf(const glm::ivec3& place) {
 
 /// Bytes of a store of floats that cones read: bricks, what finds them, their places and ranks.
 inline std::uint64_t storeBytes(const VoxelOctree& tree) {
-  const std::uint64_t brick = static_cast<std::uint64_t>(tree.brickVoxels()) * 4 * sizeof(float);
-  return wantedOf(tree)[0] * (brick + VoxelOctree::kBrickBytes) +
-         wantedOf(tree)[1] * (tree.nodes != nullptr ? VoxelOctree::kTileBytes : VoxelOctree::kCornersBytes) +
-         tree.ranks->sizeBytes() + (tree.shown != nullptr ? tree.shown->sizeBytes() : 0);
+  constexpr std::uint64_t kBrick = VoxelOctree::kBrickVoxels * 4 * sizeof(float);
+  return wantedOf(tree)[0] * (kBrick + VoxelOctree::kBrickBytes) +
+         wantedOf(tree)[1] * VoxelOctree::kCornersBytes + tree.ranks->sizeBytes() + tree.shown->sizeBytes();
 }
 
 /// Irradiance under which a fragment reflects its albedo, W/m^2.
 inline constexpr double kAmbient = kPi;
 
 /// The finest level of an octree whose fragments reflect their albedo.
-inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
-                               const char* precision = "float", const char* bricks = "own",
-                               const char* faces = "one", bool treeAsPublished = false) {
+inline RadianceOctree leavesOf(const VoxelFragments& list, const char* precision = "float",
+                               const char* faces = "one") {
   const Scene scene = cones::emptyScene();
   PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
                      snapshotOf(scene, 0.0));
@@ -118,15 +94,14 @@ inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = 
   inject.setParameter("precision", std::string(precision));
   inject.setParameter("faces", std::string(faces));
   inject.setInput("fragments", list);
-  inject.setInput("tree", treeOf(list, voxels, treeAsPublished, bricks));
+  inject.setInput("tree", treeOf(list));
   inject.run();
   return inject.output<RadianceOctree>("radiance");
 }
 
 /// The finest level of the octree of a scene under its lights.
 inline RadianceOctree injectedOctree(const Scene& scene, int resolution,
-                                     const cones::InjectSettings& settings = {}, const char* faces = "one",
-                                     const char* bricks = "own") {
+                                     const cones::InjectSettings& settings = {}, const char* faces = "one") {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   voxels.setParameter("resolution", resolution);
@@ -139,35 +114,32 @@ inline RadianceOctree injectedOctree(const Scene& scene, int resolution,
   inject.setParameter("bounces", settings.bounces);
   inject.setParameter("faces", std::string(faces));
   inject.setInput("fragments", fragments);
-  inject.setInput("tree", treeOf(fragments, "as_grid", false, bricks));
+  inject.setInput("tree", treeOf(fragments));
   inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
   inject.run();
   return inject.output<RadianceOctree>("radiance");
 }
 
-inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* opacity = "facing",
-                                     const char* borders = "added") {
+inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* opacity = "facing") {
   const Scene scene = cones::emptyScene();
   PassHarness filter(device(), techniques(), "voxel_cone_tracing", "octree_filter", scene,
                      snapshotOf(scene, 0.0));
   filter.setParameter("opacity", std::string(opacity));
-  filter.setParameter("borders", std::string(borders));
   filter.setInput("radiance", leaves);
   filter.run();
   return filter.output<RadianceOctree>("mips");
 }
 
-/// The voxels of every brick of a level: by the node's place, x first, of the 27 that it may have.
-inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level,
-                                                          int face = 0) {
+/// The voxels of every brick of a level: by the node's place, x first.
+inline std::map<Cell, std::array<glm::vec4, 8>> bricksOf(const RadianceOctree& octree, int level,
+                                                         int face = 0) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
   const gpu::TextureDescription& pool = octree.radiance->description();
-  std::map<Cell, std::array<glm::vec4, 27>> result;
+  std::map<Cell, std::array<glm::vec4, 8>> result;
   for (const auto& brick : OctreeBrickList::of(octree.tree, level).bricks) {
     auto& values = result[cellOf(brick.place)];
-    for (int i = 0; i < 27; ++i) {
-      const glm::ivec3 local(i % 3, i / 3 % 3, i / 9);
-      if (glm::any(glm::greaterThanEqual(local, glm::ivec3(octree.tree.brickSide())))) continue;
+    for (int i = 0; i < VoxelOctree::kBrickVoxels; ++i) {
+      const glm::ivec3 local(i & 1, i >> 1 & 1, i >> 2);
       const glm::ivec3 at = octree.texelOf(brick.index, face) + local;
       const std::size_t texel = 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
       values[static_cast<std::size_t>(i)] = {texels[texel], texels[texel + 1], texels[texel + 2],
@@ -193,24 +165,21 @@ inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
 /// An octree over a grid of [-1,1]^3 with all levels, whose finest voxels `fill` gives by face and voxel, as
 /// cones::makeDirections takes them; only where it is above 0 for some face there are leaves.
 inline RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int, int, int, int)>& fill,
-                               const char* bricks = "own", const char* faces = "six",
-                               const char* opacity = "facing") {
+                               const char* faces = "six", const char* opacity = "facing") {
   const auto isSomething = [&](const glm::ivec3& at) {
     bool found = false;
     for (int face = 0; face < 6 && !found; ++face) found = fill(face, at.x, at.y, at.z).w > 0.0f;
     return glm::vec4(found ? 1.0f : 0.0f);
   };
   const glm::ivec3 size(resolution);
-  RadianceOctree octree =
-      leavesOf(listOf(fragmentsWhere(size, isSomething), size), "as_grid", "float", bricks, faces);
+  RadianceOctree octree = leavesOf(listOf(fragmentsWhere(size, isSomething), size), "float", faces);
   const gpu::TextureDescription& pool = octree.radiance->description();
   std::vector<float> texels = octree.radiance->downloadFloats(0);
   for (const auto& brick : OctreeBrickList::of(octree.tree, 0).bricks)
-    for (int i = 0; i < octree.tree.brickVoxels() * octree.faces; ++i) {
-      const int side = octree.tree.brickSide(), face = i / octree.tree.brickVoxels(),
-                lane = i % octree.tree.brickVoxels();
-      const glm::ivec3 local(lane % side, lane / side % side, lane / (side * side)),
-          at = octree.texelOf(brick.index, face) + local, voxel = 2 * brick.place + local;
+    for (int i = 0; i < VoxelOctree::kBrickVoxels * octree.faces; ++i) {
+      const int face = i / VoxelOctree::kBrickVoxels;
+      const glm::ivec3 local(i & 1, i >> 1 & 1, i >> 2 & 1), at = octree.texelOf(brick.index, face) + local,
+                                                             voxel = 2 * brick.place + local;
       const glm::vec4 value = glm::any(glm::greaterThanEqual(voxel, size))
                                   ? glm::vec4(0.0f)
                                   : fill(face, voxel.x, voxel.y, voxel.z);

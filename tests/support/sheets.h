@@ -40,7 +40,7 @@ void forSheets(int axis, float coverage, const Check& check) {
   check(filteredDirections(one), "coarse directional");
   check(filteredDirections(injectedList<DirectionalRadianceGrid>("inject_directional", list)), "six grids");
   for (const char* faces : {"one", "six"})
-    check(octree::filteredOctree(octree::leavesOf(list, "as_grid", "float", "own", faces)),
+    check(octree::filteredOctree(octree::leavesOf(list, "float", faces)),
           faces == std::string("one") ? "octree" : "octree of six faces");
   const clipmap::ClipmapSettings levels{.resolution = kVoxels, .levels = 1};
   check(clipmap::madeClipmap(levels, glm::vec3(0.0f),

@@ -55,7 +55,7 @@ inline AnyStore storeOf(const StoreKind& kind, const StoreFill& fill,
     case StoreKind::Of::faces:
       return filteredDirections(makeDirections(kind.resolution, faceAtVoxel));
     case StoreKind::Of::octree:
-      return octree::octreeOf(kind.resolution, faceAtVoxel, "own", "one", kind.opacity);
+      return octree::octreeOf(kind.resolution, faceAtVoxel, "one", kind.opacity);
     case StoreKind::Of::octreeFaces:
       return octree::octreeOf(kind.resolution, faceAtVoxel);
     case StoreKind::Of::clipmap:
@@ -109,7 +109,7 @@ inline VoxelsAt voxelsOf(const octree::RadianceOctree& octree, int face, int lev
   for (const auto& [place, voxels] : octree::bricksOf(octree, level, face))
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::vec4& value = voxels[static_cast<std::size_t>(local.x + 3 * local.y + 9 * local.z)];
+      const glm::vec4& value = voxels[static_cast<std::size_t>(corner)];
       if (value.w > 0.0f)
         result[octree::cellOf(2 * glm::ivec3(place[0], place[1], place[2]) + local)] = value;
     }

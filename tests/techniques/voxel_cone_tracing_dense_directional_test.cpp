@@ -56,7 +56,7 @@ TEST_CASE("children of a column are composited as seen from each side, and the f
   CHECK(six.filledLevels == 2);
   check(six, "six grids");
   check(filteredDirections(makeGrid(2, [&](int x, int y, int z) { return fill(0, x, y, z); })), "coarse");
-  for (const char* bricks : {"own", "published"}) check(octree::octreeOf(4, fill, bricks), bricks);
+  check(octree::octreeOf(4, fill), "octree");
 }
 
 TEST_CASE("each side of a wall with two coats of paint keeps its colour and closes at every level") {
@@ -78,8 +78,8 @@ TEST_CASE("each side of a wall with two coats of paint keeps its colour and clos
         checkNear(higher.at(voxel), {0, 1, 0, 1});
       }
     }
-    if (name == std::string("coarse") || name == std::string("published")) return;
-    // Narrow cones from either side see one coat; they read six faces of an octree in own bricks alone.
+    if (name == std::string("coarse")) return;
+    // Narrow cones from either side see one coat.
     for (const float from : {-1.0f, 1.0f})
       for (const float tilt : {0.0f, 1.0f}) {
         const glm::vec3 seen =
@@ -92,7 +92,7 @@ TEST_CASE("each side of a wall with two coats of paint keeps its colour and clos
   const auto one = [&](int x, int y, int z) { return paint(0, x, y, z); };
   check(filteredDirections(makeDirections(kResolution, paint)), "six grids");
   check(filteredDirections(makeGrid(kResolution, one)), "coarse");
-  for (const char* bricks : {"own", "published"}) check(octree::octreeOf(kResolution, paint, bricks), bricks);
+  check(octree::octreeOf(kResolution, paint), "octree");
   const std::vector<float> mixed = filtered(makeGrid(kResolution, one)).radiance->downloadFloats(1);
   CHECK(mixed[4 * 8] == Approx(0.5).epsilon(1e-5));
   CHECK(mixed[4 * 8 + 1] == Approx(0.5).epsilon(1e-5));

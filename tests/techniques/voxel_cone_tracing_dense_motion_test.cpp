@@ -16,8 +16,6 @@ using namespace lumivox::test;
 
 namespace {
 
-using voxel_cone_tracing::DirectionalRadianceGrid;
-
 constexpr std::array kGrids{"voxel_cone_tracing", "voxel_cone_tracing_directional",
                             "voxel_cone_tracing_coarse_directional"};
 constexpr std::array kOctrees{"voxel_cone_tracing_octree", "voxel_cone_tracing_octree_directional"};

@@ -11,26 +11,18 @@ using namespace lumivox::test::octree;
 
 namespace {
 
-/// Voxels of every level that are not empty: as in a grid every voxel adds to that of half its number, at
-/// corners to those of the next level within one voxel of twice their number.
-std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int levels, bool atCorners) {
+/// Voxels of every level that are not empty: every voxel adds to that of half its number.
+std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int levels) {
   std::vector<std::set<Cell>> result{finest};
   while (static_cast<int>(result.size()) < levels) {
     std::set<Cell> coarse;
-    for (const Cell& cell : result.back()) {
-      if (!atCorners) coarse.insert({cell[0] / 2, cell[1] / 2, cell[2] / 2});
-      for (int step = 0; step < 27 && atCorners; ++step) {
-        const Cell shifted{cell[0] + step % 3 - 1, cell[1] + step / 3 % 3 - 1, cell[2] + step / 9 - 1};
-        if (std::all_of(shifted.begin(), shifted.end(), [](int i) { return i % 2 == 0; }))
-          coarse.insert({shifted[0] / 2, shifted[1] / 2, shifted[2] / 2});
-      }
-    }
+    for (const Cell& cell : result.back()) coarse.insert({cell[0] / 2, cell[1] / 2, cell[2] / 2});
     result.push_back(coarse);
   }
   return result;
 }
 
-/// The nodes whose bricks, of the voxels 2n to 2n + 2, hold one of these.
+/// The nodes in which reading finds one of these: those that have it among the voxels 2n to 2n + 2.
 std::set<Cell> nodesWith(const std::set<Cell>& voxels, int nodesAlong) {
   std::set<Cell> result;
   for (const Cell& voxel : voxels)
@@ -75,35 +67,14 @@ std::vector<FragmentData> shell(const glm::ivec3& size) {
 
 }  // namespace
 
-TEST_CASE("every level has the nodes whose bricks show something, and no others") {
-  for (const bool atCorners : {false, true})
-    for (const glm::ivec3& size : {glm::ivec3(2), {8, 8, 8}, {11, 7, 5}, {64, 64, 64}, {65, 20, 33}}) {
-      const std::vector<FragmentData> fragments = shell(size);
-      const VoxelOctree tree =
-          treeOf(listOf(fragments, size), atCorners ? "at_corners" : "as_grid", false, "published");
-      CAPTURE(atCorners, size.x, size.y, size.z, tree.depth);
-      const int longest = std::max({size.x, size.y, size.z});
-      REQUIRE((2 << tree.depth) >= longest);
-      if (tree.depth > 0) REQUIRE((1 << tree.depth) < longest);
-      const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1, atCorners);
-      std::size_t bricks = 0;
-      for (int level = 0; level <= tree.depth; ++level) {
-        const std::set<Cell> nodes = nodesOf(tree, level);
-        CAPTURE(level);
-        CHECK(nodes == nodesWith(voxels[static_cast<std::size_t>(level)], 1 << (tree.depth - level)));
-        bricks += nodes.size();
-      }
-      // Not one more than there are.
-      CHECK(tree.brickRoom == std::max<std::size_t>(bricks, 1));
-      CHECK(tree.leafRoom == std::max<std::size_t>(nodesOf(tree, 0).size(), 1));
-    }
-}
-
-TEST_CASE("bricks of their own voxels are there for what lies in them, and each is known all around it") {
+TEST_CASE("bricks are there for what lies in them and no others, and each is known all around it") {
   for (const glm::ivec3& size : {glm::ivec3(2), {8, 8, 8}, {11, 7, 5}, {64, 64, 64}, {65, 20, 33}}) {
     const std::vector<FragmentData> fragments = shell(size);
     const VoxelOctree tree = treeOf(listOf(fragments, size));
-    const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1, false);
+    const int longest = std::max({size.x, size.y, size.z});
+    REQUIRE((2 << tree.depth) >= longest);
+    if (tree.depth > 0) REQUIRE((1 << tree.depth) < longest);
+    const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1);
     const auto shown = tree.shown->downloadValues<std::array<std::uint32_t, 2>>();
     const auto corners = tree.corners->downloadValues<std::array<std::uint32_t, 8>>();
     std::size_t bricks = 0, firstWord = 0, records = 0, wrong = 0;
@@ -143,58 +114,9 @@ TEST_CASE("bricks of their own voxels are there for what lies in them, and each 
     }
     CHECK(wrong == 0);
     CHECK(records == wantedOf(tree)[1]);
+    // Not one more than there are.
     CHECK(tree.brickRoom == std::max<std::size_t>(bricks, 1));
-  }
-}
-
-TEST_CASE("with voxels in leaves, as published, there are the nodes that fragments lie in") {
-  const glm::ivec3 size(40, 24, 33);
-  const std::vector<FragmentData> fragments = shell(size);
-  const VoxelOctree tree = treeOf(listOf(fragments, size), "in_leaves");
-  for (int level = 0; level <= tree.depth; ++level) {
-    std::set<Cell> nodes;
-    for (const Cell& cell : cellsOf(fragments))
-      nodes.insert({cell[0] >> (level + 1), cell[1] >> (level + 1), cell[2] >> (level + 1)});
-    CAPTURE(level);
-    CHECK(nodesOf(tree, level) == nodes);
-  }
-}
-
-TEST_CASE("every node is found from the root and knows its brick and its neighbours; others are not found") {
-  const glm::ivec3 size(40, 24, 33);
-  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"}) {
-    for (const bool asPublished : {false, true}) {
-      const VoxelOctree tree = treeOf(listOf(shell(size), size), voxels, asPublished, "published");
-      std::vector<NodeData> nodes = tree.nodes->downloadValues<NodeData>();
-      CHECK(nodes.size() == 8u * wantedOf(tree)[1]);
-      for (int level = 0; level <= tree.depth; ++level) {
-        std::map<Cell, std::uint32_t> expected;
-        for (const auto& brick : OctreeBrickList::of(tree, level).bricks)
-          expected[cellOf(brick.place)] = brick.index;
-        const int along = 1 << (tree.depth - level);
-        std::size_t found = 0, wrong = 0;
-        for (int z = 0; z < along; ++z)
-          for (int y = 0; y < along; ++y)
-            for (int x = 0; x < along; ++x) {
-              const std::uint32_t node = nodeAt(nodes, tree, level, {x, y, z});
-              const auto known = expected.find({x, y, z});
-              wrong += (node == kNone) != (known == expected.end()) ? 1u : 0u;
-              if (node == kNone || known == expected.end()) continue;
-              ++found;
-              wrong += nodes[node].brick != known->second ? 1u : 0u;
-              for (std::size_t axis = 0; axis < 3; ++axis) {
-                glm::ivec3 next(x, y, z);
-                ++next[static_cast<int>(axis)];
-                const std::uint32_t neighbour =
-                    next[static_cast<int>(axis)] < along ? nodeAt(nodes, tree, level, next) : kNone;
-                wrong += nodes[node].neighbours[axis] != neighbour ? 1u : 0u;
-              }
-            }
-        CAPTURE(voxels, asPublished, level);
-        CHECK(found == expected.size());
-        CHECK(wrong == 0);
-      }
-    }
+    CHECK(tree.leafRoom == std::max<std::size_t>(nodesOf(tree, 0).size(), 1));
   }
 }
 
@@ -236,28 +158,11 @@ TEST_CASE("a tree that outgrows its room is made again with all of it, and a sma
   CHECK(wantedOf(again)[0] == small);
 }
 
-TEST_CASE("built level by level, as published, the tree has the same nodes") {
-  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"})
-    for (const glm::ivec3& size : {glm::ivec3(2), {11, 7, 5}, {64, 64, 64}}) {
-      const VoxelFragments list = listOf(shell(size), size);
-      const VoxelOctree ours = treeOf(list, voxels, false, "published"),
-                        published = treeOf(list, voxels, true);
-      CAPTURE(voxels, size.x);
-      CHECK(wantedOf(published)[0] == wantedOf(ours)[0]);
-      // It subdivides nodes at corners too of which nothing finer shows.
-      CHECK(wantedOf(published)[1] >= wantedOf(ours)[1]);
-      if (std::string(voxels) == "in_leaves") CHECK(wantedOf(published)[1] == wantedOf(ours)[1]);
-      CHECK(published.brickRoom == ours.brickRoom);
-      for (int level = 0; level <= ours.depth; ++level)
-        CHECK(nodesOf(published, level) == nodesOf(ours, level));
-    }
-}
-
 TEST_CASE("the octree takes the share of the dense grid's memory that the card says") {
   struct Claim {
     const char* scene;
     int resolution;
-    double own, published;  // of the bytes of the dense grid with its mips
+    double share;  // of the bytes of the dense grid with its mips
   };
   for (const Claim& claim : {Claim{"cornell", 64, 0.305, 1.06}, Claim{"cornell", 128, 0.166, 0.61},
                              Claim{"cornell", 256, 0.087, 0.31}, Claim{"arcade", 128, 0.458, 1.50},
@@ -269,8 +174,6 @@ TEST_CASE("the octree takes the share of the dense grid's memory that the card s
     const auto list = voxels.output<VoxelFragments>("fragments");
     const double dense = static_cast<double>(list.grid.voxelCount()) * 16.0 * 8.0 / 7.0;
     CAPTURE(claim.scene, claim.resolution);
-    CHECK(static_cast<double>(storeBytes(treeOf(list))) / dense == Approx(claim.own).epsilon(0.05));
-    CHECK(static_cast<double>(storeBytes(treeOf(list, "as_grid", false, "published"))) / dense ==
-          Approx(claim.published).epsilon(0.05));
+    CHECK(static_cast<double>(storeBytes(treeOf(list))) / dense == Approx(claim.share).epsilon(0.05));
   }
 }

@@ -144,8 +144,8 @@ TEST_CASE("what is known of a fragment's back is not light of its front, and off
 TEST_CASE("injections that light all fragments themselves refuse those that bring their light along") {
   const Scene scene = roof(true, true);
   const Seen seen(scene);
-  for (const auto& [technique, name] : {std::pair("voxel_cone_tracing", "inject_as_published"),
-                                        {"light_propagation_volumes", "inject_voxels"}}) {
+  for (const auto& [technique, name] :
+       {std::pair("thesis_cone_tracing", "inject"), {"light_propagation_volumes", "inject_voxels"}}) {
     PassHarness inject(device(), techniques(), technique, name, scene, seen.snapshot);
     inject.setInput("fragments", seen.fragments);
     inject.setInput("shadow", seen.shadow);

@@ -189,8 +189,11 @@ TEST_CASE(
            {"002_table_1.pipeline", {"hierarchy hierarchy.hierarchy"}, {}},
            // Gomes 2015, Listings 4.17 to 4.25.
            {"004_table_3_octree.pipeline",
-            {"as_published on", "photons_are relit", "look_up descent", "borders averaged"},
-            {"shadow shadow.depth\n    two_sided"}}}) {
+            {"thesis_cone_tracing.octree {", "thesis_cone_tracing.octree_relight {",
+             "thesis_cone_tracing.octree_mipmap { radiance surfaces.radiance }",
+             "thesis_cone_tracing.gather {"},
+            {"voxel_cone_tracing.o", "voxel_cone_tracing.gather", "shadow shadow.depth\n    tree",
+             "at_corners", "added"}}}) {
     const std::string text = readFile(sourceDirectory() / "scenes/reproductions" / asked.file);
     for (const std::string& part : asked.holds) {
       CAPTURE(asked.file, part);

@@ -98,12 +98,3 @@ StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   if (result.value.a > 0.0) result.opacity = opacityOfStep(result.value.a, stride, level, blend);
   return result;
 }
-
-vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
-  float finest, coarseness = clamp(log2(size / storeVoxel), 0.0, storeCoarsest);
-  int there = finestLevel(at, int(coarseness), finest);
-  coarseness = min(max(coarseness, float(there) + finest), storeCoarsest);
-  vec4 value = interpolated(at, direction, int(coarseness));
-  if (fract(coarseness) > 0.0) value = mix(value, interpolated(at, direction, int(coarseness) + 1), fract(coarseness));
-  return value;
-}

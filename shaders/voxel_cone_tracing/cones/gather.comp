@@ -13,7 +13,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int coneCount = 6;
 layout(constant_id = 1) const int publishedCones = 0;
-layout(constant_id = 2) const int asPublished = 0;
 layout(constant_id = 3) const int glossyCones = 1;
 // No uniforms: a fourth block whose values alone decide something ends the process on a second driver (docs/gpu.md).
 layout(constant_id = 5) const int every = 1;    // one pixel of so many along each axis is gathered
@@ -60,19 +59,17 @@ struct Cone {
 // Thesis Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
 const int kPublishedCones = 5;
 const float kTilted = 0.70710678118654752440;
-bool fiveCones() { return asPublished != 0 || publishedCones != 0; }
 
 // Cone `i` of the hemisphere.
 Cone diffuseCone(int i, vec3 normal, vec2 place) {
   vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
   Cone cone;
-  if (fiveCones()) {
-    const float kPrintedWeight = 0.707;
+  if (publishedCones != 0) {
     vec3 side = (i & 1) != 0 ? tangent : bitangent;
     cone.direction = i == 0 ? normal : normalize(normal + (i <= 2 ? side : -side));
     cone.tanHalfAngle = 0.5 * coneRatio;
     cone.cosTheta = i == 0 ? 1.0 : kTilted;
-    cone.weight = i == 0 ? 1.0 : asPublished != 0 ? kPrintedWeight : kTilted;
+    cone.weight = i == 0 ? 1.0 : kTilted;
   } else {
     cone.direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cone.cosTheta, cone.tanHalfAngle);
     cone.weight = 1.0;
@@ -80,16 +77,13 @@ Cone diffuseCone(int i, vec3 normal, vec2 place) {
   return cone;
 }
 
-// By what the sum is divided. Those as published are not divided, so that a constant environment gains radiance; `cones published` deviates and
-// divides by the sum of the weights, 1 + 4 / sqrt 2.
-float diffuseWeights() {
-  return asPublished != 0 ? 1.0 : publishedCones != 0 ? 1.0 + 4.0 * kTilted : float(coneCount);
-}
+// By what the sum is divided. The five of the listing are not divided, so that a constant environment gains radiance; here they are by the sum of
+// their weights, 1 + 4 / sqrt 2.
+float diffuseWeights() { return publishedCones != 0 ? 1.0 + 4.0 * kTilted : float(coneCount); }
 #endif
 
 #if GLOSSY
 const uint kGlossyCone = 0xffffu;  // number of the first one
-int lobeCones() { return asPublished != 0 ? 1 : glossyCones; }
 
 // Cone `i` of the Phong lobe cos^n around the mirror direction. One cone is as wide as the lobe's solid angle; several have equal shares of the
 // lobe, each as wide as its share, and those below the horizon have no weight.
@@ -97,7 +91,7 @@ Cone glossyCone(int i, vec3 normal, vec3 mirror, float exponent) {
   Cone cone;
   cone.direction = mirror;
   float cosHalfAngle = cosHalfAngleOfLobe(exponent);
-  if (lobeCones() > 1) {
+  if (glossyCones > 1) {
     vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent);
     float share = (float(i) + 0.5) / float(glossyCones), angle = float(i) * kGoldenAngle;
     float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(max(1.0 - cosAxis * cosAxis, 0.0));
@@ -122,18 +116,18 @@ void main() {
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
     vec3 apex = position.xyz;
-    if (asPublished == 0) apex += texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * finestVoxel(apex));
+    apex += texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * finestVoxel(apex));
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
     if (arrivingDiffuse != 0) albedo = vec3(1.0);
     vec2 place = placeInStratum();
-    if (any(greaterThan(albedo, vec3(0.0)))) diffuseCones = fiveCones() ? kPublishedCones : coneCount;
+    if (any(greaterThan(albedo, vec3(0.0)))) diffuseCones = publishedCones != 0 ? kPublishedCones : coneCount;
 #endif
 #if GLOSSY
     vec4 specular = texelFetch(gSpecular, pixel, 0);
     mirrors = any(greaterThan(specular.rgb, vec3(0.0)));
     vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-    if (mirrors) lobes = lobeCones();
+    if (mirrors) lobes = glossyCones;
 #endif
     // Every cone passes through the one call of a march, which is inlined wherever it is called and is nearly all of the code.
     for (int i = 0; i < diffuseCones + lobes; ++i) {
@@ -149,9 +143,7 @@ void main() {
       }
 #endif
       if (cone.weight <= 0.0) continue;
-      vec3 arriving = cone.weight * (asPublished != 0
-                                         ? traceConeAsPublished(apex, cone.direction, 2.0 * cone.tanHalfAngle, number)
-                                         : traceCone(apex, cone.direction, cone.tanHalfAngle, cone.cosTheta, number));
+      vec3 arriving = cone.weight * traceCone(apex, cone.direction, cone.tanHalfAngle, cone.cosTheta, number);
 #if DIFFUSE
       if (i < diffuseCones) diffuse += arriving;
 #endif

@@ -1,4 +1,5 @@
-// Radiance along a cone through a store: Crassin et al. 2011, Sec. 7; thesis 004, Sec. 4.2.1, Listing 4.13.
+// Radiance along a cone through a store: Crassin et al. 2011, Sec. 7; thesis 004, Sec. 4.2.1, Listing 4.13 (thesis_cone_tracing has it as
+// printed).
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
 #include "common/random.glsl"
@@ -92,39 +93,6 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
   if (opacity < kOpaque) passed *= exp(-opticalDepth(apex + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
   radiance += passed * (max(1.0 - opacity, 0.0) * environmentAlong(direction, tanHalfAngle));
-#endif
-  return radiance;
-}
-
-// Listing 4.13 as printed, lengths in metres in place of shares of the grid. A sample is two finest voxels wide or as wide as the cone, and
-// is taken where its step begins. The exponent of the opacity correction is half of its diameter over the first one's: with plain means that
-// is half of what a uniform medium takes. What was gathered is multiplied by the opacity anew at every step, and values that the opacity has
-// been multiplied into by it again. Environment and media, of which the listing says nothing, come in as in traceCone.
-vec3 traceConeAsPublished(vec3 apex, vec3 direction, float ratio, uint cone) {
-  float leastDiameter = 2.0 * finestVoxel(apex), distance = leastDiameter;
-  float firstDiameter = max(leastDiameter, ratio * distance);
-  if (jitter > 0.0) distance += jitter * shiftOf(cone) * (0.5 * firstDiameter);
-  float end = min(maxDistance, insideStore(apex, direction).y);
-  vec3 radiance = vec3(0.0);
-  float opacity = 0.0;
-  while (distance <= end && opacity < 1.0) {
-    float diameter = max(leastDiameter, ratio * distance);
-    vec4 value = readStoreAsPublished(apex + direction * distance, direction, diameter);
-#if MEDIUM != MEDIUM_NONE
-    value.rgb *= exp(-opticalDepth(apex, direction, distance, kMediumSteps));
-#endif
-    float stepOpacity = stepOpacityOf(max(1.0 - value.a, 0.0), (diameter / 2.0) / firstDiameter);
-    radiance = radiance * opacity + (1.0 - opacity) * (stepOpacity * value.rgb);
-    opacity += stepOpacity * (1.0 - opacity);
-    distance += diameter / 2.0;
-  }
-  radiance *= storeUnit;
-#if ENVIRONMENT
-  vec3 passed = vec3(max(1.0 - opacity, 0.0));
-#if MEDIUM != MEDIUM_NONE
-  passed *= exp(-opticalDepth(apex, direction, kNoReach, kMediumSteps));
-#endif
-  radiance += passed * environmentAlong(direction, 0.5 * ratio);
 #endif
   return radiance;
 }

@@ -5,8 +5,6 @@
 //   bool readsLayers()                              the opacity of a sample is that of its step through layers of voxels; else that of voxels
 //   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
 //                                                   what a step of `stride` m through voxels of `size` m around a point looks like
-//   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
-//                                                   the values themselves, blended between levels as the thesis prints it
 // C++ side: StoreInput in techniques/voxel_cone_tracing/cones/march.h.
 #pragma lumivox axis STORE dense directional octree clipmap
 #ifndef LUMIVOX_STORE

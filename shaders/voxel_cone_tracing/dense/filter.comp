@@ -8,8 +8,7 @@
 // - a sheet one voxel thick of opacity a keeps a at every level, while the plain mean of the thesis halves it at every level and lets
 //   light escape. So does, more slowly, any mean over the axes: along the sheet only half of the columns meet it.
 // Radiance over opacity is a mean of what is blended, over the axes weighted by the square of their opacities. `average` is the
-// published mean of the eight children, over all that a coarse voxel shares in; `trilinear` is that as printed, one read between eight
-// children by the filter of the texture, which at odd sizes misses the others.
+// published mean of the eight children, over all that a coarse voxel shares in.
 //
 // OCCUPIED: only the coarse voxels in occupied bricks of 4 x 4 x 4 finest voxels are made; the others are 0 already. A brick has 2 x 2 x 2
 // voxels of level 1 and one of level 2.
@@ -25,7 +24,71 @@ layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
 
-#include "filter_cell.glsl"
+#include "common/cones.glsl"
+#include "../children.glsl"
+
+const int kFacing = 0, kAverage = 1;
+layout(constant_id = 0) const int rule = kFacing;
+
+layout(std140, binding = 0) uniform Parameters {
+  ivec3 coarse;   // voxels of the level that is written
+  int fineLevel;
+  ivec3 fine;     // voxels of the level that is read
+};
+layout(binding = 0) uniform sampler3D radianceGrid;
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
+
+// Mean over the columns along one axis, and over both ways along it.
+vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
+  int side = (axis + 1) % 3, up = (axis + 2) % 3;
+  vec4 sum = vec4(0.0);
+  float weight = 0.0;
+  for (int v = first[up]; v <= last[up]; ++v)
+    for (int u = first[side]; u <= last[side]; ++u) {
+      float part = share(cell[up], v, ratio[up]) * share(cell[side], u, ratio[side]);
+      vec4 ahead = vec4(0.0), back = vec4(0.0);
+      for (int w = first[axis]; w <= last[axis]; ++w) {
+        ivec3 child;
+        child[axis] = w;
+        child[side] = u;
+        child[up] = v;
+        vec4 value = slab(texelFetch(radianceGrid, child, fineLevel), share(cell[axis], w, ratio[axis]));
+        ahead = over(ahead, value);
+        back = over(value, back);
+      }
+      sum += part * (ahead + back);
+      weight += 2.0 * part;
+    }
+  return sum / weight;
+}
+
+void filterCell(ivec3 cell) {
+  if (rule == kFacing && fine == 2 * coarse) {
+    vec4 child[8];
+    for (int i = 0; i < 8; ++i) child[i] = texelFetch(radianceGrid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2), fineLevel);
+    imageStore(radianceImage, cell, seenThrough(child));
+    return;
+  }
+  vec3 ratio = vec3(fine) / vec3(coarse);
+  ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
+
+  if (rule == kFacing) {
+    imageStore(radianceImage, cell,
+               facing(lookThrough(cell, 0, first, last, ratio), lookThrough(cell, 1, first, last, ratio),
+                      lookThrough(cell, 2, first, last, ratio)));
+    return;
+  }
+  vec4 sum = vec4(0.0);
+  float weight = 0.0;
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        float part = share(cell.x, x, ratio.x) * share(cell.y, y, ratio.y) * share(cell.z, z, ratio.z);
+        sum += part * texelFetch(radianceGrid, ivec3(x, y, z), fineLevel);
+        weight += part;
+      }
+  imageStore(radianceImage, cell, weight > 0.0 ? sum / weight : vec4(0.0));
+}
 
 void main() {
 #if OCCUPIED

@@ -48,7 +48,3 @@ StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
 #endif
   return result;
 }
-
-vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
-  return textureLod(radianceGrid, (at - storeLow) / storeExtent, log2(size / storeVoxel));
-}

@@ -41,7 +41,3 @@ vec4 layers(vec3 posWorld, vec3 direction, float level, float stride) {
 }
 
 #include "../cones/read_faces.glsl"
-
-vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
-  return interpolated(at, direction, log2(size / storeVoxel));
-}

@@ -1,21 +1,14 @@
 #version 450
 // The bricks of each depth, and the dispatches over them, so that no count travels to the host. Where there is too little room the tree stays
 // empty; the host learns how much is wanted when the frame is done.
-//
-// PUBLISHED: the bricks of a depth are those that it took from the counter.
-#pragma lumivox axis PUBLISHED 0 1
 #define OCTREE_BUILD
 #include "octree_tags.glsl"
 layout(local_size_x = 16) in;
 #include "octree_levels.glsl"
 
-layout(std140, binding = 0) uniform Room { uint roomBricks, roomTiles, roomLeaves; };
-#if PUBLISHED
-uint firstBrickOf(int depth) { return octreeLevels[depth].firstBrick; }
-#else
+layout(std140, binding = 0) uniform Room { uint roomBricks, roomShown, roomLeaves; };
 layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
 uint firstBrickOf(int depth) { return octreeRanks[firstWord(depth)].nodesBefore; }
-#endif
 
 void main() {
   int depth = int(gl_GlobalInvocationID.x);  // one more: all of them
@@ -23,11 +16,9 @@ void main() {
   uint first = depth <= octreeDepth ? firstBrickOf(depth) : 0u;
   uint end = depth < octreeDepth ? firstBrickOf(depth + 1) : wantedBricks;
   uint leaves = wantedBricks - firstBrickOf(octreeDepth);
-  bool fits = wantedBricks <= roomBricks && wantedTiles <= roomTiles && leaves <= roomLeaves;
+  bool fits = wantedBricks <= roomBricks && wantedShown <= roomShown && leaves <= roomLeaves;
   uint bricks = fits ? end - first : 0u;
-#if !PUBLISHED
   octreeLevels[depth].firstBrick = first;
-#endif
   octreeLevels[depth].bricks = bricks;
   if (depth == octreeDepth) wantedLeaves = end - first;
   for (int kind = 0; kind < kThreads.length(); ++kind) {

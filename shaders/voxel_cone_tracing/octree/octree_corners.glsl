@@ -1,4 +1,4 @@
-// Bricks of their own voxels: those around a node in which trilinear reading from its voxels finds something. A node may be shown that has no
+// The bricks around a node in which trilinear reading from its voxels finds something. A node may be shown that has no
 // brick, since only its neighbours have.
 #ifndef LUMIVOX_OCTREE_CORNERS
 #define LUMIVOX_OCTREE_CORNERS

@@ -1,9 +1,9 @@
 #version 450
 // Pre-filtering of one level of an octree from the next finer one as filter.comp does it: the eight children of a coarse voxel are the voxels
-// that one child's brick owns. Each brick gets the eight voxels that are its own; the others are copied (octree_transfer.comp).
+// of one child's brick.
 //
-// Deviates from Crassin et al. 2011, Sec. 5 (octree_filter_part.comp): a wall one voxel thick that lies between two coarse voxels makes both
-// opaque there, and grows to three of them in trilinear reading.
+// Deviates from Crassin et al. 2011, Sec. 5, where coarse voxels lie at the corners of nodes: a wall one voxel thick that lies between two of
+// them makes both opaque there, and grows to three of them in trilinear reading.
 //
 // LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
 // CHANGED: what has not changed since static geometry was lit is copied from there.
@@ -30,13 +30,6 @@ layout(std430, binding = 4) readonly buffer Lit { uint lit[]; };  // by brick
 #endif
 layout(binding = 0) uniform sampler3D pool;
 layout(binding = 0) uniform writeonly image3D poolImage;  // the same
-
-// The brick of a child of a brick's node.
-uint childBrick(OctreeBrick brick, uint child) {
-  if (octreeRanked != 0) return rankedBrick(mortonOf(unpackVoxel(brick.place)) << 3 | child, depth + 1);
-  uint tile = octreeNodes[brick.node].children;
-  return tile == kNone ? kNone : octreeNodes[tile + child].brick;
-}
 
 #if DIRECTIONS
 uint finerBrick;
@@ -67,22 +60,20 @@ void filtered(uint finer, out vec4 faces[kFaces]) {
 
 void main() {
   uint brick, lane;
-  if (!itemOf(depth, voxelsOfBrick(), brick, lane)) return;
+  if (!itemOf(depth, kBrickVoxels, brick, lane)) return;
 #if LIT
   if (lit[brick] == 0u) return;
 #endif
   ivec3 voxel = voxelOfLane(lane);
+  uint morton = mortonOf(unpackVoxel(octreeBricks[brick]));
 #if CHANGED
-  uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place));
   if (!isChanged(morton, depth)) {
     for (uint face = 0u; face < kFaces; ++face)
       imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, stillVoxel(morton, depth, voxel, face));
     return;
   }
 #endif
-  uint finer = kNone;  // of voxels that are copied, unless there is nothing to copy
-  if (all(lessThan(voxel, ivec3(2)))) finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));
   vec4 faces[kFaces];
-  filtered(finer, faces);
+  filtered(rankedBrick(morton << 3 | lane, depth + 1), faces);
   for (uint face = 0u; face < kFaces; ++face) imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, faces[face]);
 }

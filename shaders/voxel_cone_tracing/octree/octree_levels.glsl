@@ -7,24 +7,21 @@
 #include "octree.glsl"
 
 const uint kOctreeGroup = 64u;
-// So many threads a brick have dispatches of their own: the brick; its faces, own voxels (which are also its corners), a side, edges, all.
-const uint kThreads[6] = uint[6](1u, 6u, 8u, 9u, 12u, 27u);
+// So many threads a brick have dispatches of their own.
+const uint kThreads[2] = uint[2](1u, kBrickVoxels);
 
-struct OctreeBrick {
-  uint node;
-  uint place;  // of the node, in nodes of its depth, 10 bits an axis
-};
 struct OctreeLevel {
   uint firstBrick, bricks;
-  uint groups[18];  // x, y, z of dispatches, in the order of kThreads
+  uint groups[6];  // x, y, z of dispatches, in the order of kThreads
 };
 
 layout(std430, binding = 10) OCTREE_ACCESS buffer OctreeLevels {
-  uint wantedBricks, wantedTiles;  // all that the fragments ask for, whether there is room or not
+  uint wantedBricks, wantedShown;  // all that the fragments ask for, whether there is room or not
   uint wantedLeaves;               // bricks of the finest level
   OctreeLevel octreeLevels[];      // by depth; and one behind for all depths together
 };
-layout(std430, binding = 11) OCTREE_ACCESS buffer OctreeBricks { OctreeBrick octreeBricks[]; };  // by depth
+// Of each brick, by depth, the place of its node, in nodes of its depth, 10 bits an axis.
+layout(std430, binding = 11) OCTREE_ACCESS buffer OctreeBricks { uint octreeBricks[]; };
 
 // The brick of this thread at a depth, and which of its brick's threads it is; false behind the last.
 bool itemOf(int depth, uint threads, out uint brick, out uint lane) {
@@ -34,10 +31,6 @@ bool itemOf(int depth, uint threads, out uint brick, out uint lane) {
   return item / threads < octreeLevels[depth].bricks;
 }
 
-uint voxelsOfBrick() { return uint(octreeSide * octreeSide * octreeSide); }
-ivec3 voxelOfLane(uint lane) {
-  uint side = uint(octreeSide);
-  return ivec3(lane % side, lane / side % side, lane / (side * side));
-}
+ivec3 voxelOfLane(uint lane) { return ivec3(lane & 1u, lane >> 1 & 1u, lane >> 2); }
 
 #endif

@@ -7,7 +7,6 @@ layout(std140, binding = 0) uniform Photons {
   vec3 gridLow;     // m
   float voxelSize;  // m
   ivec3 mapSize;    // texels, layers
-  int apart;        // texels between a leaf's own voxels: 1; in leaves, whose corners they are, 2
 };
 layout(binding = 0) uniform sampler2DArray photonPosition;
 layout(binding = 1) uniform sampler2DArray photonNormal;
@@ -19,7 +18,7 @@ uint voxelAt(vec3 at) {
   ivec3 voxel = ivec3(floor(at));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, ivec3(2 << octreeDepth)))) return 0u;
   uint brick = brickOfCode(codeOf(voxel >> 1, octreeDepth));
-  if (brick == kNone || texelFetch(pool, texelOf(brick) + apart * (voxel & 1), 0).a == 0.0) return 0u;
+  if (brick == kNone || texelFetch(pool, texelOf(brick) + (voxel & 1), 0).a == 0.0) return 0u;
   return codeOf(voxel, octreeDepth + 1);
 }
 

@@ -1,7 +1,7 @@
 #version 450
 // What the photons of a voxel reflect. Their sum, so that no flux is lost where they lie further apart than voxels (Crassin et al. 2011, Sec. 6):
 // a surface with the normal n meets |nx| + |ny| + |nz| voxels of the width w for each area w^2 that it has. Or, of one light, their average by
-// the areas that they stand for (thesis 004, Sec. 4.2.2, Listing 4.24). Deviates from that listing: neither depends on the order
+// the areas that they stand for (as thesis 004, Sec. 4.2.2, Listing 4.24, averages them). Deviates from that listing: neither depends on the order
 // (common/integer_mean.glsl), and photons reflect what they do themselves in place of the average surface of the voxel.
 #pragma lumivox axis STAGE count add
 layout(local_size_x = 64) in;

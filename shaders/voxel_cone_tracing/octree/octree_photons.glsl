@@ -30,15 +30,7 @@ uint commonAncestor(uint a, uint b) {
 uint brickOfCode(uint code) {
   if (octreeLevels[octreeDepth].bricks == 0u) return kNone;
   int depth = depthOf(code);
-  if (octreeRanked != 0) return rankedBrick(code - (1u << 3 * depth), depth);
-  // From the root, three bits a depth (thesis 004, Listing 4.17).
-  uint node = 0u;
-  for (int below = depth - 1; below >= 0; --below) {
-    uint tile = octreeNodes[node].children;
-    if (tile >= kTagged) return kNone;
-    node = tile + (code >> 3 * below & 7u);
-  }
-  return octreeNodes[node].brick;
+  return rankedBrick(code - (1u << 3 * depth), depth);
 }
 
 #endif

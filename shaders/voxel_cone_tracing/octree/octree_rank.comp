@@ -1,17 +1,14 @@
 #version 450
-// How many nodes, and tiles or nodes that are shown, lie before those of each word of tags.
+// How many nodes, and nodes that are shown, lie before those of each word of tags.
 #include "octree_tags.glsl"
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 
-layout(std140, binding = 0) uniform Words {
-  int words;
-  int own;  // 1: nodes that are shown, 0: tiles
-};
+layout(std140, binding = 0) uniform Words { int words; };
 layout(std430, binding = 2) readonly buffer Tags { uint tags[]; };
 layout(std430, binding = 3) readonly buffer Shown { uint shown[]; };
 layout(std430, binding = 4) readonly buffer ChunkCounts { uvec2 chunkCounts[]; };  // before each
-layout(std430, binding = 5) writeonly buffer Records { RankedTags records[]; };
+layout(std430, binding = 5) writeonly buffer ShownRanks { RankedTags shownRanks[]; };
 layout(std430, binding = 12) writeonly buffer OctreeRanks { RankedTags octreeRanks[]; };
 
 void main() {
@@ -19,9 +16,9 @@ void main() {
   if (first >= uint(words)) return;
   uvec2 before = chunkCounts[chunk];
   for (uint word = first; word < min(first + kChunk, uint(words)); ++word) {
-    uvec2 bits = uvec2(tags[word], own != 0 ? shown[word] : tilesIn(tags[word]));
+    uvec2 bits = uvec2(tags[word], shown[word]);
     octreeRanks[word] = RankedTags(bits.x, before.x);
-    records[word] = RankedTags(bits.y, before.y);
+    shownRanks[word] = RankedTags(bits.y, before.y);
     before += uvec2(bitCount(bits.x), bitCount(bits.y));
   }
 }

@@ -1,5 +1,4 @@
-// A bit for each node that could be, set where there is one: so all nodes are counted, and room is made for them, before any is written. A
-// tile of eight nodes is a byte.
+// A bit for each node that could be, set where there is one: so all nodes are counted, and room is made for them, before any is written.
 #ifndef LUMIVOX_OCTREE_TAGS
 #define LUMIVOX_OCTREE_TAGS
 #include "toolkit/bit_tree.glsl"
@@ -8,12 +7,6 @@ const uint kNone = 0xffffffffu;
 // Words of tags that one thread counts.
 const uint kChunk = 64u;
 
-// The lowest bit of each byte that is not 0.
-uint tilesIn(uint word) {
-  word |= word >> 4;
-  word |= word >> 2;
-  return (word | word >> 1) & 0x01010101u;
-}
 uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
 
 // Tags beside the number of nodes before them, which is that of the first one's brick.

@@ -34,20 +34,12 @@ class GatherPass : public Pass {
                          1.15470053837925152902f,  // 2 tan 30 degrees
                          within(0.01f, 8.0f),
                          "diameter of one of those five over its height; no number is published"};
-  PublishedForm asPublished{
-      this,
-      "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance' and 'footprint' have no say"};
   Param<int> pattern{
-      this,
-      "pattern",
-      4,
-      within(1, 8),
-      "side of a square of pixels each of which sends its cones elsewhere; a joint bilateral filter as wide averages them, so that they count as that many times more",
-      published(1)};
+      this, "pattern", 4, within(1, 8),
+      "side of a square of pixels each of which sends its cones elsewhere; a joint bilateral filter as wide averages them, so that they count as that many times more; 1, as published: each by itself"};
   Param<Resolution> resolution{
       this, "resolution", Resolution::full,
-      "of the pixels that send cones; those between are filled by a joint bilateral filter",
-      published(Resolution::full)};
+      "of the pixels that send cones; those between are filled by a joint bilateral filter"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
       "distance off a pixel's surface, in voxels, at which that filter gives another one the weight 1/e"};
@@ -83,7 +75,6 @@ class GatherPass : public Pass {
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = input.axis,
-                                  .lookUp = input.lookUp,
                                   .faces = input.faces};
     const int every = 1 << static_cast<int>(static_cast<Resolution>(resolution)), side = pattern;
     const glm::ivec3 gathered =
@@ -97,7 +88,6 @@ class GatherPass : public Pass {
                arrivingGlossy = variant.glossy && every > 1;
     const gather::Constants constants{.coneCount = cones,
                                       .publishedCones = distribution == Distribution::published,
-                                      .asPublished = asPublished,
                                       .glossyCones = glossyCones,
                                       .publishedLobes = coneLobe == ConeLobe::cosine,
                                       .every = every,

@@ -70,7 +70,7 @@ StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
   return result;
 }
 
-StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
+StoreBinding storeOf(const RadianceOctree& octree, bool layers) {
   const VoxelOctree& tree = octree.tree;
   // With the empty voxels that a dense grid has at its high ends: a wall in the last voxels is read to half a
   // voxel of every level behind it, and a cone that ended with it would take half of the wall for open.
@@ -82,21 +82,8 @@ StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
              .storeUnit = octree.unit,
              .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel,
              .storeLayers = layers});
-  if (tree.nodes == nullptr && descends)
-    throw Error(
-        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
-  if (octree.faces > 1 && tree.nodes != nullptr)
-    throw Error(
-        "voxel_cone_tracing: cones read six faces in bricks of their own voxels alone; expected 'bricks own' in voxel_cone_tracing.octree, or 'faces one' in voxel_cone_tracing.octree_inject");
-  result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
-                  : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
-                                                       : gather::Variant::lookUpDescent;
   result.faces = octree.faces > 1 ? gather::Variant::facesSix : gather::Variant::facesOne;
-  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
-      {.firstVoxel = tree.firstVoxel(),
-       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
-  // What is not read as published fetches texels.
-  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
   result.add(OctreeBinding(tree, octree.poolShift));
   return result;
 }
@@ -113,9 +100,6 @@ StoreInput::StoreInput(Pass* pass)
       clipmap_(pass, "clipmap", Presence::optional,
                "in place of 'grid': pre-filtered radiance in levels around the camera", Needs::nothing,
                Levels::all),
-      lookUp_(
-          pass, "look_up", LookUp::ranks,
-          "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
       reading_(
           pass, "reading", Reading::layers,
           "of 'directions', 'clipmap' and an octree with six faces: each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
@@ -130,7 +114,7 @@ StoreBinding StoreInput::binding() const {
   if (grid_.present()) return storeOf(*grid_);
   if (clipmap_.present()) return storeOf(*clipmap_, reading_ == Reading::layers);
   return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers)
-                               : storeOf(*octree_, lookUp_ == LookUp::descent, reading_ == Reading::layers);
+                               : storeOf(*octree_, reading_ == Reading::layers);
 }
 
 ConeMarch::ConeMarch(Pass* pass)

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "../clipmap/radiance_clipmap.h"
-#include "../dense/directional_grid.h"
 #include "../octree/radiance_octree.h"
+#include "lumivox/pipeline/ports/directional_radiance_grid.h"
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -14,7 +14,6 @@ namespace lumivox::voxel_cone_tracing {
 /// includes store.glsl takes them.
 struct StoreBinding : shader::BindingSet {
   int axis = 0;             ///< value of the shader's axis STORE
-  int lookUp = 0;           ///< and of LOOK_UP
   int faces = 0;            ///< and of FACES
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
@@ -26,9 +25,8 @@ struct StoreBinding : shader::BindingSet {
 StoreBinding storeOf(const RadianceGrid& grid);
 /// By layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
-/// Bricks are found from the root in place of by their ranks; those of six faces are read by layers, or
-/// filtered along all axes.
-StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers);
+/// Of six faces by layers, or filtered along all axes.
+StoreBinding storeOf(const RadianceOctree& octree, bool layers);
 StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
@@ -48,13 +46,11 @@ class StoreInput {
 
  private:
   enum class Reading { layers, interpolated };
-  enum class LookUp { ranks, descent };
 
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
   In<RadianceOctree> octree_;
   In<RadianceClipmap> clipmap_;
-  Param<LookUp> lookUp_;
   Param<Reading> reading_;
 };
 

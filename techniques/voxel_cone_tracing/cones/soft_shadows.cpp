@@ -107,7 +107,6 @@ class SoftShadowsPass : public Pass {
                                    .emission = frame.traits().emission,
                                    .medium = boundMedia.axis,
                                    .store = input.axis,
-                                   .lookUp = input.lookUp,
                                    .faces = input.faces};
     const shadows::Constants constants{.radiusOf = static_cast<int>(static_cast<Radius>(radius)),
                                        .asMedium = opacity == Opacity::medium};

@@ -1,6 +1,5 @@
 // Coarser levels of a dense grid of isotropic voxels: Crassin et al. 2011, Sec. 5; thesis Gomes 2015,
 // Sec. 4.2.1.
-#include "drawn.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -21,29 +20,22 @@ bool continuesLevels(PassContext& frame, const ChangedBricks& changed) {
                                       [] { return std::shared_ptr<const void>(std::make_shared<int>(0)); }));
 }
 
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn, bool onlyChanges) {
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool onlyChanges) {
   namespace filter = shaders::voxel_cone_tracing::filter;
-  namespace filter_drawn = shaders::voxel_cone_tracing::filter_drawn;
   const gpu::TextureDescription& texture = grid.radiance->description();
   const glm::ivec3 finest(texture.width, texture.height, texture.depth);
   const OccupiedBricks& bricks = onlyChanges ? grid.changed.bricks : grid.occupied;
   const filter::Constants constants{.rule = static_cast<int>(opacity)};
-  const auto sampling = opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
   for (int level = 1; level < texture.levels; ++level) {
     const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
     // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+    const bool followsBricks = bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                finest % OccupiedBricks::kSide == glm::ivec3(0);
     const shader::BindingSet bindings{
         filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
-        filter::radianceGrid(grid.radiance, sampling), filter::radianceImage(grid.radiance, level),
-        filter::brickList(bricks.bricks), filter::brickCount(bricks.count)};
-    if (drawn) {
-      drawVoxels(frame,
-                 frame.program(filter_drawn::Variant{}, filter_drawn::Constants{.rule = constants.rule}),
-                 bindings, coarse);
-      continue;
-    }
+        filter::radianceGrid(grid.radiance, gpu::Sampling::nearest),
+        filter::radianceImage(grid.radiance, level), filter::brickList(bricks.bricks),
+        filter::brickCount(bricks.count)};
     const auto& program = frame.program(filter::Variant{followsBricks}, constants);
     if (!followsBricks) {
       frame.dispatch(program, bindings, coarse);
@@ -63,8 +55,7 @@ class FilterPass : public Pass {
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
-      "how children make a parent: seen through along the axis that they face; their plain mean; or that mean as published, in one read by the texture's filter, which misses children where sizes are odd"};
-  Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
+      "how children make a parent: seen through along the axis that they face; or their plain mean"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
@@ -73,7 +64,7 @@ class FilterPass : public Pass {
     if (filtered.radiance->description().levels < gpu::fullLevelCount(size.x, size.y, size.z))
       throw Error(
           "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
-    fillLevels(frame, filtered, opacity, drawn, continuesLevels(frame, filtered.changed));
+    fillLevels(frame, filtered, opacity, continuesLevels(frame, filtered.changed));
     mips = filtered;
   }
 };

@@ -1,6 +1,5 @@
 // Coarser levels of six directional grids: Crassin et al. 2011, Sec. 8.1; thesis Gomes 2015, Sec. 3.1.3 and
 // 4.2.1, Fig. 64.
-#include "drawn.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -11,8 +10,7 @@ namespace {
 
 namespace filter = shaders::voxel_cone_tracing::filter_directional;
 
-void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level, bool drawn,
-               bool onlyChanges) {
+void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level, bool onlyChanges) {
   const glm::ivec3 coarse = levelResolution(result.grid.resolution, level),
                    fine = levelResolution(result.grid.resolution, level - 1);
   const int first = result.firstLevelOfFaces(), written = level - first;
@@ -20,7 +18,7 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
   const int read = fromFinest ? 0 : level - 1 - first;
   const OccupiedBricks& bricks = onlyChanges ? result.changed.bricks : result.occupied;
   // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-  const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+  const bool followsBricks = bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                              result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
   const int perSide = OccupiedBricks::kSide >> level;
   const auto source = [&](int face) -> const gpu::TextureRef& {
@@ -46,11 +44,6 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
       filter::negativeZImage(target(5), written),
       filter::brickList(bricks.bricks),
       filter::brickCount(bricks.count)};
-  if (drawn) {
-    drawVoxels(frame, frame.program(shaders::voxel_cone_tracing::filter_directional_drawn::kProgram),
-               bindings, coarse, 6);
-    return;
-  }
   const auto& program = frame.program(filter::Variant{followsBricks});
   if (!followsBricks) {
     frame.dispatch(program, bindings, coarse);
@@ -66,12 +59,11 @@ class FilterDirectionalPass : public Pass {
   In<RadianceGrid> finest{this, "finest", Presence::optional,
                           "in place of 'radiance': a finest level that is the same from all sides, so that "
                           "only coarser ones have six grids (thesis Sec. 3.1.3)"};
-  Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
   Out<DirectionalRadianceGrid> mips{this, "mips", "the same with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result = input(frame);
-    fillLevels(frame, result, drawn, continuesLevels(frame, result.changed));
+    fillLevels(frame, result, continuesLevels(frame, result.changed));
     mips = result;
   }
 
@@ -118,10 +110,10 @@ class FilterDirectionalPass : public Pass {
 
 }  // namespace
 
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn, bool onlyChanges) {
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool onlyChanges) {
   const glm::ivec3 size = grid.grid.resolution;
   grid.filledLevels = gpu::fullLevelCount(size.x, size.y, size.z);
-  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level, drawn, onlyChanges);
+  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level, onlyChanges);
 }
 
 void addFilterDirectional(TechniqueRegistry& registry) {

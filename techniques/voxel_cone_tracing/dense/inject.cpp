@@ -134,12 +134,6 @@ class Injection {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
-    if (result.faces > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
-      throw Error(
-          "voxel_cone_tracing.octree_inject: the six faces of a coarse voxel are seen through eight whole ones, and voxels at corners or in leaves cover halves of others; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'faces one'");
-    if (bounces.count() > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
-      throw Error(
-          "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
     const float brightest = brightestOf(frame, result.unit, bounces.count());
     // Every bounce changes all of the light.
     if (bounces.count() == 1) result.still = stillIn(frame, result);
@@ -148,8 +142,7 @@ class Injection {
     resolveLeaves(frame, result, sums, addsUp());
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       fillLevels(frame, result);
-      reflect(frame, sums, direct, brightest, bounces.cones(),
-              storeOf(result, result.tree.ranks == nullptr, true));
+      reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
       resolveLeaves(frame, result, sums, addsUp());
     }
     result.filledLevels = 1;
@@ -254,7 +247,6 @@ class Injection {
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = store.axis,
-                                  .lookUp = store.lookUp,
                                   .faces = store.faces,
                                   .places = sums.kind};
     // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose

@@ -1,7 +1,7 @@
 // Coarser levels of grids from their finest: what the filters do, and injection between two bounces.
 #pragma once
 
-#include "directional_grid.h"
+#include "lumivox/pipeline/ports/directional_radiance_grid.h"
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -11,17 +11,15 @@ namespace lumivox::voxel_cone_tracing {
 /// share children, and an opaque child makes both opaque: walls grow thicker from level to level.
 glm::ivec3 evenlyHalved(const glm::ivec3& size);
 
-/// How children make a parent, in the order of filter.comp: seen through along the axis that they face; their
-/// plain mean; that mean in one read by the texture's filter.
-enum class Opacity { facing, average, trilinear };
+/// How children make a parent, in the order of filter.comp: seen through along the axis that they face; or
+/// their plain mean.
+enum class Opacity { facing, average };
 
 /// Fills all levels above the finest, for which the texture has room.
-/// `drawn`: by draws without attributes (drawn.h), of all voxels. `onlyChanges`: the levels hold what they
-/// did before grid.changed, and the next two above the finest are made anew only there.
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn = false,
-                bool onlyChanges = false);
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn = false,
-                bool onlyChanges = false);
+/// `onlyChanges`: the levels hold what they did before grid.changed, and the next two above the finest are
+/// made anew only there.
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool onlyChanges = false);
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool onlyChanges = false);
 
 /// Whether the pass that runs made the levels of the run before, so that only what has changed differs.
 bool continuesLevels(PassContext& frame, const ChangedBricks& changed);

@@ -23,21 +23,13 @@ namespace lumivox::voxel_cone_tracing {
 using namespace shaders::voxel_cone_tracing;
 
 OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
-    : shader::BindingSet{
-          shader::UniformSlot<octree_nodes::Octree>{"Octree"}({.octreeDepth = tree.depth,
-                                                               .octreePoolShift = poolShift,
-                                                               .octreeRanked = tree.ranks != nullptr,
-                                                               .octreeSide = tree.brickSide()}),
-          // A tree without one of them has the other, which a shader that asks first never
-          // reads in its place.
-          shader::StorageSlot{"OctreeRanks"}(tree.ranks != nullptr ? tree.ranks : tree.nodes),
-          shader::StorageSlot{"OctreeNodes"}(tree.nodes != nullptr ? tree.nodes : tree.ranks),
-          shader::StorageSlot{"OctreeLevels"}(tree.levels),
-          shader::StorageSlot{"OctreeBricks"}(tree.bricks)} {
-  if (tree.bricksAre == VoxelOctree::Bricks::published) return;
-  add(shader::StorageSlot{"OctreeShown"}(tree.shown));
-  add(shader::StorageSlot{"OctreeCorners"}(tree.corners));
-}
+    : shader::BindingSet{shader::UniformSlot<octree_nodes::Octree>{"Octree"}(
+                             {.octreeDepth = tree.depth, .octreePoolShift = poolShift}),
+                         shader::StorageSlot{"OctreeRanks"}(tree.ranks),
+                         shader::StorageSlot{"OctreeLevels"}(tree.levels),
+                         shader::StorageSlot{"OctreeBricks"}(tree.bricks),
+                         shader::StorageSlot{"OctreeShown"}(tree.shown),
+                         shader::StorageSlot{"OctreeCorners"}(tree.corners)} {}
 
 namespace {
 
@@ -47,19 +39,17 @@ struct TreeBytes {
   std::uint64_t tags = 0, nodes = 0;
 };
 TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
-  const bool own = tree.bricksAre == VoxelOctree::Bricks::own;
   const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)], all = tree.brickRoom,
-                      records = tree.recordRoom * bricks / all;
-  return {wordsBeforeDepth(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
-          bricks * VoxelOctree::kBrickBytes +
-              records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
+                      shown = tree.shownRoom * bricks / all;
+  return {wordsBeforeDepth(depth + 1) * (2 * 4 + 2 * 8),
+          bricks * VoxelOctree::kBrickBytes + shown * VoxelOctree::kCornersBytes};
 }
 /// And of its bricks, with the sums that fill the leaves.
 std::uint64_t brickBytes(const VoxelOctree& tree, int depth, const VoxelBytes& voxel) {
   const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
                       leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
                                          : bricks;
-  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxel.texels + 8 * leaves * voxel.sums;
+  return bricks * VoxelOctree::kBrickVoxels * voxel.texels + 8 * leaves * voxel.sums;
 }
 
 }  // namespace
@@ -111,33 +101,20 @@ void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const
 namespace {
 
 class OctreePass : public Pass {
-  using Voxels = VoxelOctree::Voxels;
-  using Bricks = VoxelOctree::Bricks;
-
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
-  Param<Voxels> voxels{
-      this, "voxels", Voxels::asGrid,
-      "where voxels lie: at all levels as in a dense grid; at the corners of nodes (Crassin et al. 2011); in the eighths of leaves, with only the nodes that fragments lie in (as published in the thesis)"};
-  PublishedForm asPublished{
-      this,
-      "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places; neighbours are found from the root by every fragment at every depth (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
-  Param<Bricks> bricks{
-      this, "bricks", Bricks::own,
-      "voxels of a brick: its own 2 x 2 x 2, each voxel held once, and neighbours' found by rank; or, as published, 3 x 3 x 3 with those that neighbours hold too. Own ones are those of 'voxels as_grid' with 'as_published off'; elsewhere bricks are as published"};
   Out<VoxelOctree> tree{this, "tree", "nodes, and places for their bricks"};
 
   /// What trees need: the most that any frame wanted, which is what later ones get.
   struct Room {
     std::uint32_t bricks = 0, leaves = 0;
-    std::uint32_t records = 0;               ///< tiles of nodes, or bricks around nodes
+    std::uint32_t shown = 0;                 ///< nodes in which reading finds something
     std::vector<std::uint32_t> bricksAbove;  ///< those of lesser depths, by depth
     bool operator==(const Room&) const = default;
   };
   Room room_, stillRoom_;
   std::optional<Room> roomBefore_, stillRoomBefore_;  ///< of the run before
 
-  /// A bit for each node that could be: those that have bricks, and those in which reading finds something,
-  /// which are the same where bricks hold all that their nodes show.
+  /// A bit for each node that could be: those that have bricks, and those in which reading finds something.
   struct Tags {
     gpu::BufferRef nodes, shown;
   };
@@ -148,9 +125,7 @@ class OctreePass : public Pass {
 
   void run(PassContext& frame) override {
     auto [result, tags] = placed(frame, room_, roomBefore_);
-    if (asPublished) {
-      subdivide(frame, result);
-    } else if (result.bricksAre == Bricks::own && fragments->still != nullptr) {
+    if (fragments->still != nullptr) {
       const Still& still =
           frame.kept("nodes of static geometry", fragments->still, [&] { return nodesOfStill(frame); });
       result.still = still.tree;
@@ -166,9 +141,6 @@ class OctreePass : public Pass {
       mark(frame, result, *fragments, tags, {});
       write(frame, result, tags, room_);
     }
-    if (result.bricksAre == Bricks::published && !asPublished)
-      forEachBrick(frame, frame.program(octree_neighbours::kProgram), {OctreeBinding(result)}, result,
-                   result.depth + 1, 1);
     judge(frame, result, room_);
     tree = result;
   }
@@ -188,12 +160,10 @@ class OctreePass : public Pass {
                                       std::optional<Room>& before) const {
     VoxelOctree result;
     result.grid = fragments->grid;
-    result.voxels = voxels;
-    if (voxels == Voxels::asGrid && !asPublished) result.bricksAre = bricks;
     result.depth = voxelDepthOver(result.grid) - 1;
     result.brickRoom = std::max(room.bricks, 1u);
     result.leafRoom = std::max(room.leaves, 1u);
-    result.recordRoom = std::max(room.records, 1u);
+    result.shownRoom = std::max(room.shown, 1u);
     result.needsMore = before != room;
     result.bricksDownTo.assign(static_cast<std::size_t>(result.depth) + 1, 0);
     for (std::size_t depth = 1; depth < std::min(room.bricksAbove.size(), result.bricksDownTo.size());
@@ -207,21 +177,15 @@ class OctreePass : public Pass {
 
   std::pair<VoxelOctree, Tags> taken(PassContext& frame, VoxelOctree result) const {
     Tags tags;
-    if (result.bricksAre == Bricks::own) {
-      result.corners =
-          frame.buffer(result.recordRoom * VoxelOctree::kCornersBytes, "octree bricks around nodes");
-    } else {
-      result.nodes = frame.buffer(result.recordRoom * VoxelOctree::kTileBytes, "octree nodes");
-      result.nodes->clear(~0u);
-    }
+    result.corners =
+        frame.buffer(result.shownRoom * VoxelOctree::kCornersBytes, "octree bricks around nodes");
     result.bricks = frame.buffer(result.brickRoom * VoxelOctree::kBrickBytes, "octree bricks");
     result.levels = frame.buffer(VoxelOctree::levelsBytes(result.depth), "octree levels");
-    if (asPublished) return {result, tags};
     const std::uint64_t words = wordsOf(result);
     result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
-    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes");
-    if (result.bricksAre == Bricks::published) return {result, tags};
-    result.shown = frame.elements(octree_rank::records, words, "ranks of octree nodes that show something");
+    tags.nodes = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes");
+    result.shown =
+        frame.elements(octree_rank::shownRanks, words, "ranks of octree nodes that show something");
     tags.shown = frame.emptyElements(octree_mark::shown, words, "octree nodes that show something");
     return {result, tags};
   }
@@ -230,10 +194,8 @@ class OctreePass : public Pass {
 
   static void mark(PassContext& frame, const VoxelOctree& result, const VoxelFragments& list,
                    const Tags& tags, const octree_mark::Variant& variant) {
-    shader::BindingSet bindings{octree_mark::marks({.depth = result.depth,
-                                                    .voxels = static_cast<int>(result.voxels),
-                                                    .own = result.bricksAre == Bricks::own}),
-                                octree_mark::tags(tags.nodes), octree_mark::shown(tags.shown)};
+    shader::BindingSet bindings{octree_mark::marks({result.depth}), octree_mark::tags(tags.nodes),
+                                octree_mark::shown(tags.shown)};
     if (variant.moving != 0) bindings.add(bindStaticCount(list));
     forEachFragment(frame, frame.program(variant), bindings, list);
   }
@@ -241,63 +203,24 @@ class OctreePass : public Pass {
   static void write(PassContext& frame, VoxelOctree& result, const Tags& tags, const Room& room) {
     const std::uint64_t words = wordsOf(result), chunks = (words + kChunk - 1) / kChunk;
     const int wordCount = static_cast<int>(words);
-    const bool own = result.bricksAre == Bricks::own;
-    const gpu::BufferRef counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
-                         records = own ? result.shown
-                                       : frame.elements(octree_rank::records, words, "ranks of octree tiles");
+    const gpu::BufferRef counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes");
     const OctreeBinding bound(result);
     frame.dispatchList(frame.program(octree_count::kProgram),
-                       {octree_count::words({wordCount, own}), octree_count::tags(tags.nodes),
+                       {octree_count::words({wordCount}), octree_count::tags(tags.nodes),
                         octree_count::shown(tags.shown), octree_count::chunkCounts(counts)},
                        chunks);
     scan(frame, counts, chunks, 2, result.levels);  // which begins with the bricks and tiles that are wanted
     frame.dispatchList(frame.program(octree_rank::kProgram),
-                       {octree_rank::words({wordCount, own}), octree_rank::tags(tags.nodes),
+                       {octree_rank::words({wordCount}), octree_rank::tags(tags.nodes),
                         octree_rank::shown(tags.shown), octree_rank::chunkCounts(counts),
-                        octree_rank::records(records), octree_rank::octreeRanks(result.ranks)},
+                        octree_rank::shownRanks(result.shown), octree_rank::octreeRanks(result.ranks)},
                        chunks);
-    frame.dispatch(frame.program(octree_arguments::Variant{}),
-                   {octree_arguments::room({room.bricks, room.records, room.leaves}), bound},
+    frame.dispatch(frame.program(octree_arguments::kProgram),
+                   {octree_arguments::room({room.bricks, room.shown, room.leaves}), bound},
                    {result.depth + 2, 1, 1});
     frame.dispatchList(
-        frame.program(octree_nodes::Variant{.bricks = own ? octree_nodes::Variant::bricksOwn
-                                                          : octree_nodes::Variant::bricksPublished}),
-        {octree_nodes::nodeRoom({room.bricks, room.records, static_cast<std::uint32_t>(words)}),
-         octree_nodes::records(records), bound},
-        words);
-  }
-
-  /// Depth after depth. Where a depth has too little room the next ones find no nodes: each time that the
-  /// frame is rendered anew one more depth is counted.
-  void subdivide(PassContext& frame, const VoxelOctree& result) {
-    std::vector<std::uint32_t> words(VoxelOctree::levelsBytes(result.depth) / sizeof(std::uint32_t));
-    words[1] = 1;  // the root's tile
-    result.levels->uploadValues(std::span<const std::uint32_t>(words));
-    const std::uint32_t brickRoom = room_.bricks, tileRoom = room_.records;
-    const gpu::BufferRef range = frame.uploaded(std::array<std::uint32_t, 5>{}, "octree nodes of a depth");
-    constexpr std::uint64_t kGroups = 2 * sizeof(std::uint32_t);  // in `range`
-    const OctreeBinding bound(result);
-    for (int depth = 0; depth <= result.depth; ++depth) {
-      forEachFragment(frame, frame.program(octree_tag::kProgram),
-                      {octree_tag::tag({.depth = depth, .voxels = static_cast<int>(result.voxels)}), bound},
-                      *fragments);
-      frame.dispatch(frame.program(octree_range::kProgram),
-                     {octree_range::range({depth, tileRoom}), octree_range::nodeRange(range), bound},
-                     {1, 1, 1});
-      frame.dispatchIndirect(frame.program(octree_subdivide::kProgram),
-                             {octree_subdivide::subdivision({depth, brickRoom, tileRoom}),
-                              octree_subdivide::nodeRange(range), bound},
-                             *range, kGroups);
-    }
-    frame.dispatch(frame.program(octree_arguments::Variant{.published = 1}),
-                   {octree_arguments::room({brickRoom, tileRoom, room_.leaves}), bound},
-                   {result.depth + 2, 1, 1});
-    // The print looks for them before each depth is tagged; here a node holds its place where its neighbours
-    // come to stand until it is subdivided.
-    for (int depth = 0; depth <= result.depth; ++depth)
-      forEachFragment(frame, frame.program(octree_fragment_neighbours::kProgram),
-                      {octree_fragment_neighbours::depth({depth, static_cast<int>(result.voxels)}), bound},
-                      *fragments);
+        frame.program(octree_nodes::kProgram),
+        {octree_nodes::nodeRoom({room.bricks, room.shown, static_cast<std::uint32_t>(words)}), bound}, words);
   }
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
@@ -306,7 +229,7 @@ class OctreePass : public Pass {
   /// with a sixteenth more where later ones will want more or less, since things move.
   void judge(PassContext& frame, const VoxelOctree& result, Room& room) const {
     const std::uint32_t share = &room == &room_ && fragments->still != nullptr ? 16 : 0;
-    for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.records}, {2, &room.leaves}})
+    for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.shown}, {2, &room.leaves}})
       judge(frame, result.levels, static_cast<std::uint64_t>(word), *wanted, share, true);
     room.bricksAbove.resize(static_cast<std::size_t>(result.depth) + 1);
     for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)

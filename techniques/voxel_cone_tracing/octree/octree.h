@@ -34,23 +34,11 @@ void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& 
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
                         const shader::StorageSlot& sums);
 
-/// Fills all levels above the leaves of an octree whose voxels lie as in a grid, seen through along the axis
-/// that they face; what its `still` says has not changed is copied from there.
+/// Fills all levels above the leaves of an octree, seen through along the axis that they face; what its
+/// `still` says has not changed is copied from there.
 void fillLevels(PassContext& frame, RadianceOctree& octree);
 
 /// The bricks of the leaves from the sums of their voxels. `coverageSum`: coverages add up.
 void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums, bool coverageSum);
-
-/// In the order of octree_transfer.comp.
-enum class Transfer { add, copy, average };
-
-/// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
-/// both have are added or averaged, or those of the higher one are copied to the lower one. Nothing where
-/// each voxel is held once.
-void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
-
-/// A depth of an octree whose voxels lie at corners or in leaves, from the next one: centres, faces, edges
-/// and corners, one after another, as means that neighbours average or as shares that they add up.
-void addParts(PassContext& frame, const RadianceOctree& octree, int depth, bool means);
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -19,13 +19,10 @@ class OctreeSplatPass : public Pass {
                                   "what the lights see; without it the octree stays as it is"};
   In<RadianceOctree> octree{this, "octree", "surfaces without that light, pre-filtered", Levels::all};
   // In the order of octree_photon_sums.comp.
-  enum class Photons { summed, averaged, relit };
+  enum class Photons { summed, averaged };
   Param<Photons> rule{
       this, "photons_are", Photons::summed,
-      "the flux of all of them goes into the area that surfaces have in a voxel, so that none is lost (Crassin et al. 2011); or they are averaged for each light: what lies between photons stays dark; or each relights the mean colour and normal of its voxel, 'fragments', as printed in the thesis (Listing 4.24), with 'voxels in_leaves'"};
-  In<VoxelFragments> fragments{
-      this, "fragments", Presence::optional,
-      "what the octree was made of: of its colours and normals, for 'photons_are relit'"};
+      "the flux of all of them goes into the area that surfaces have in a voxel, so that none is lost (Crassin et al. 2011); or they are averaged for each light: what lies between photons stays dark"};
   Out<RadianceOctree> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                                Levels::all};
 
@@ -34,15 +31,8 @@ class OctreeSplatPass : public Pass {
       radiance = *octree;
       return;
     }
-    if (rule == Photons::relit) {
-      radiance = relit(frame);
-      return;
-    }
     RadianceOctree result = *octree;
     const VoxelOctree& tree = result.tree;
-    if (tree.voxels != VoxelOctree::Voxels::asGrid || tree.ranks == nullptr)
-      throw Error(
-          "voxel_cone_tracing.octree_splat: a photon changes the one voxel of each level that it lies in only with 'voxels as_grid'; expected that and 'as_published off' in voxel_cone_tracing.octree");
     if (result.faces > 1)
       throw Error(
           "voxel_cone_tracing.octree_splat: photons light voxels that look the same from all sides; expected 'faces one' in voxel_cone_tracing.octree_inject");
@@ -55,7 +45,7 @@ class OctreeSplatPass : public Pass {
     const gpu::BufferRef lit = frame.emptyElements(octree_lit::lit, tree.brickRoom, "bricks of photons"),
                          sums = frame.emptyElements(octree_photon_sums::sums, 8 * tree.leafRoom,
                                                     "sums of photons");
-    const gpu::TextureRef nodes = nodeMap(frame, tree, bound, 1);
+    const gpu::TextureRef nodes = nodeMap(frame, tree, bound);
     markLit(frame, *nodes, bound, lit);
     const int passes = rule == Photons::averaged ? std::max(photons->lightCount, 1) : 1;
     for (int light = 0; light < passes; ++light) {
@@ -63,62 +53,8 @@ class OctreeSplatPass : public Pass {
       average(frame, light, bound, nodes, sums);
       splat(frame, result, sums, light == 0 ? octree->radiance : result.radiance);
     }
-    transferBorders(frame, result, tree.depth, Transfer::copy);
     for (int depth = tree.depth - 1; depth >= 0; --depth) halve(frame, result, depth, lit);
     radiance = result;
-  }
-
-  /// Listing 4.24, and all levels anew by the thesis's averaging passes.
-  RadianceOctree relit(PassContext& frame) {
-    RadianceOctree result = *octree;
-    const VoxelOctree& tree = result.tree;
-    if (!fragments.present() || tree.voxels != VoxelOctree::Voxels::inLeaves)
-      throw Error(
-          "voxel_cone_tracing.octree_splat: 'photons_are relit' is what the thesis does with the colours and normals in the corners of leaves; expected the input 'fragments', and 'voxels in_leaves' in voxel_cone_tracing.octree");
-    if (fragments->reflected != nullptr)
-      throw Error(
-          "voxel_cone_tracing.octree_splat: input 'fragments' brings along direct light that the image has, and Listing 4.24 lights all voxels by photons; expected fragments without it ('direct' of voxelization.reproject left out)");
-    result.radiance = frame.volume(poolSize(*octree->radiance), octree->radiance->description().format,
-                                   "octree bricks of photons");
-    const OctreeBinding bound(tree, result.poolShift);
-    const gpu::TextureRef nodes = nodeMap(frame, tree, bound, 2),
-                          colours = surfaces(frame, octree_surfaces::Variant::whatColour),
-                          normals = surfaces(frame, octree_surfaces::Variant::whatNormal);
-    const gpu::BufferRef sums =
-        frame.emptyElements(octree_relight::sums, 8 * tree.leafRoom, "sums of photons");
-    const glm::ivec3 size = sizeOf(*photons->position, 0);
-    for (const int stage : {octree_relight::Variant::stageCount, octree_relight::Variant::stageAdd})
-      frame.dispatchList(frame.program(octree_relight::Variant{.stage = stage}),
-                         {octree_relight::relit({.mapSize = size}),
-                          octree_relight::photonPosition(photons->position, gpu::Sampling::nearest),
-                          octree_relight::photonFlux(photons->flux, gpu::Sampling::nearest),
-                          octree_relight::nodes(nodes, gpu::Sampling::nearest),
-                          octree_relight::colours(colours, gpu::Sampling::nearest),
-                          octree_relight::normals(normals, gpu::Sampling::nearest),
-                          octree_relight::lights(photons->lights), octree_relight::sums(sums), bound},
-                         countOf(size));
-    splat(frame, result, sums, octree->radiance);
-    transferBorders(frame, result, tree.depth, Transfer::average);
-    for (int depth = tree.depth - 1; depth >= 0; --depth) addParts(frame, result, depth, true);
-    return result;
-  }
-
-  /// The mean colours or normals of voxels in the bricks of the leaves.
-  gpu::TextureRef surfaces(PassContext& frame, int what) const {
-    RadianceOctree pool = *octree;
-    pool.radiance =
-        frame.volume(poolSize(*octree->radiance), gpu::Format::rgba32f, "octree bricks of surfaces");
-    pool.unit = 1.0f;
-    VoxelSums sums;
-    sums.kind = octree_surfaces::Variant::placesOctree;
-    sums.voxels = frame.emptyElements(octree_surfaces::sums, 8 * pool.tree.leafRoom, "sums of voxels");
-    sums.places = OctreeBinding(pool.tree, pool.poolShift);
-    const gpu::BufferRef values = radiancesOf(frame, *fragments, sums);
-    forEachFragment(frame, frame.program(octree_surfaces::Variant{.what = what, .places = sums.kind}),
-                    {octree_surfaces::radiances(values), sums.bindings()}, *fragments);
-    addUp(frame, *fragments, sums, values);
-    resolveLeaves(frame, pool, sums, fragments->coverage == VoxelFragments::Coverage::sum);
-    return pool.radiance;
   }
 
   /// The bricks of `from` with the light of photons, into those of `result`.
@@ -133,7 +69,7 @@ class OctreeSplatPass : public Pass {
                                                : std::numeric_limits<float>::max()}),
          octree_splat::sums(sums), octree_splat::pool(from, gpu::Sampling::nearest),
          octree_splat::poolImage(result.radiance), OctreeBinding(result.tree, result.poolShift)},
-        result.tree, result.tree.depth + 1, result.tree.brickVoxels());
+        result.tree, result.tree.depth + 1, VoxelOctree::kBrickVoxels);
   }
 
   static glm::ivec3 poolSize(const gpu::Texture& pool) {
@@ -148,21 +84,19 @@ class OctreeSplatPass : public Pass {
   }
 
   /// The leaf of each photon, and the lowest common ancestors of those of neighbours.
-  gpu::TextureRef nodeMap(PassContext& frame, const VoxelOctree& tree, const OctreeBinding& bound,
-                          int apart) {
+  gpu::TextureRef nodeMap(PassContext& frame, const VoxelOctree& tree, const OctreeBinding& bound) {
     const glm::ivec3 size = sizeOf(*photons->position, 0);
     const gpu::TextureRef map = frame.texture({gpu::TextureKind::d2Array, gpu::Format::r32ui, size.x, size.y,
                                                size.z, gpu::fullLevelCount(size.x, size.y)},
                                               "node map");
-    frame.dispatchList(
-        frame.program(octree_node_map::kProgram),
-        {octree_node_map::photons(
-             {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size, .apart = apart}),
-         octree_node_map::photonPosition(photons->position, gpu::Sampling::nearest),
-         octree_node_map::photonNormal(photons->normal, gpu::Sampling::nearest),
-         octree_node_map::pool(octree->radiance, gpu::Sampling::nearest), octree_node_map::nodeMap(map),
-         bound},
-        countOf(size));
+    frame.dispatchList(frame.program(octree_node_map::kProgram),
+                       {octree_node_map::photons(
+                            {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size}),
+                        octree_node_map::photonPosition(photons->position, gpu::Sampling::nearest),
+                        octree_node_map::photonNormal(photons->normal, gpu::Sampling::nearest),
+                        octree_node_map::pool(octree->radiance, gpu::Sampling::nearest),
+                        octree_node_map::nodeMap(map), bound},
+                       countOf(size));
     for (int level = 1; level < map->description().levels; ++level) {
       const glm::ivec3 coarse = sizeOf(*map, level), fine = sizeOf(*map, level - 1);
       frame.dispatchList(
@@ -213,8 +147,7 @@ class OctreeSplatPass : public Pass {
         {octree_filter::coarse({depth}), octree_filter::lit(lit),
          octree_filter::pool(result.radiance, gpu::Sampling::nearest),
          octree_filter::poolImage(result.radiance), OctreeBinding(result.tree, result.poolShift)},
-        result.tree, depth, result.tree.brickVoxels());
-    transferBorders(frame, result, depth, Transfer::copy);
+        result.tree, depth, VoxelOctree::kBrickVoxels);
   }
 };
 

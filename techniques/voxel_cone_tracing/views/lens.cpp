@@ -44,7 +44,6 @@ class LensPass : public Pass {
     frame.dispatch(frame.program(code::Variant{.environment = frame.traits().environment,
                                                .medium = bound.axis,
                                                .store = input.axis,
-                                               .lookUp = input.lookUp,
                                                .faces = input.faces},
                                  code::Constants{.widthRule = static_cast<int>(static_cast<Width>(width)),
                                                  .asMedium = opacity == Opacity::medium}),

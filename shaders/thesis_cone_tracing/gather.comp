@@ -1,0 +1,126 @@
+#version 450
+// Final gathering (Sec. 4.2.1, Listings 4.11 to 4.13): five cones over the hemisphere, with the weights 1 and 0.707, not normalised, so that a
+// constant environment comes in 3.828 times; and one cone as wide as the Phong lobe around the mirror direction. Its width, and that its light is
+// multiplied by the cosine of the surface, are not printed.
+#pragma lumivox axis DIFFUSE 0 1
+#pragma lumivox axis GLOSSY 0 1
+#pragma lumivox require DIFFUSE || GLOSSY
+#pragma lumivox axis ENVIRONMENT 0 1
+#include "common/random.glsl"
+#include "store.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Cones {
+  vec3 eyeWorld;
+  float coneRatio;    // diameter of one of the five cones over its height
+  vec3 environment;   // radiance of the environment
+  float maxDistance;  // m
+  float jitter;       // most by which a cone begins further on, in steps
+  uvec2 seed;
+};
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+#if DIFFUSE
+layout(binding = 3) uniform sampler2D gDiffuse;
+layout(binding = 0, rgba32f) uniform writeonly image2D diffuseImage;
+#endif
+#if GLOSSY
+layout(binding = 5) uniform sampler2D gSpecular;
+layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
+#endif
+
+// How far a cone's first sample is moved, [0, 1): by the pixel, the cone and the seed.
+float shiftOf(uint cone) {
+  return unitInterval(hash4(uvec4(gl_GlobalInvocationID.x | gl_GlobalInvocationID.y << 16, cone, seed)).xy).x;
+}
+
+// Listing 4.13, lengths in metres in place of shares of the grid. A sample is two finest voxels wide or as wide as the cone, and is taken where
+// its step begins. The exponent of the opacity correction is half of its diameter over the first one's: with plain means that is half of what a
+// uniform medium takes. What was gathered is multiplied by the opacity anew at every step, and values that the opacity has been multiplied into
+// by it again. The environment, of which the listing says nothing, is seen by what the opacity leaves.
+vec3 traceCone(vec3 apex, vec3 direction, float ratio, uint cone) {
+  float leastDiameter = 2.0 * storeVoxel, distance = leastDiameter;
+  float firstDiameter = max(leastDiameter, ratio * distance);
+  if (jitter > 0.0) distance += jitter * shiftOf(cone) * (0.5 * firstDiameter);
+  float end = min(maxDistance, insideVolume(storeLow, storeExtent, apex, direction).y);
+  vec3 radiance = vec3(0.0);
+  float opacity = 0.0;
+  while (distance <= end && opacity < 1.0) {
+    float diameter = max(leastDiameter, ratio * distance);
+    vec4 value = readStore(apex + direction * distance, direction, diameter);
+    float stepOpacity = stepOpacityOf(max(1.0 - value.a, 0.0), (diameter / 2.0) / firstDiameter);
+    radiance = radiance * opacity + (1.0 - opacity) * (stepOpacity * value.rgb);
+    opacity += stepOpacity * (1.0 - opacity);
+    distance += diameter / 2.0;
+  }
+  radiance *= storeUnit;
+#if ENVIRONMENT
+  radiance += max(1.0 - opacity, 0.0) * environment;
+#endif
+  return radiance;
+}
+
+const int kCones = 5;             // Listing 4.12
+const uint kGlossyCone = 0xffffu;  // its number
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
+  if (position.w > 0.0) {
+    vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+    int first = 0, end = kCones;  // of the cones: five diffuse ones and one glossy one
+#if DIFFUSE
+    vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb, tangent = tangentTo(normal), bitangent = cross(normal, tangent);
+    if (!any(greaterThan(albedo, vec3(0.0)))) first = kCones;
+#else
+    first = kCones;
+#endif
+#if GLOSSY
+    vec4 specular = texelFetch(gSpecular, pixel, 0);
+    vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
+    float cosMirror = max(dot(mirror, normal), 0.0);
+    if (any(greaterThan(specular.rgb, vec3(0.0))) && cosMirror > 0.0) end = kCones + 1;
+#endif
+    // Every cone passes through the one call of a march, which is inlined wherever it is called.
+    for (int i = first; i < end; ++i) {
+      vec3 direction = normal;
+      float ratio = coneRatio, weight = 1.0;
+      uint number = uint(i);
+#if DIFFUSE
+      if (i > 0 && i < kCones) {
+        vec3 side = (i & 1) != 0 ? tangent : bitangent;
+        direction = normalize(normal + (i <= 2 ? side : -side));
+        weight = 0.707;
+      }
+#endif
+#if GLOSSY
+      if (i == kCones) {
+        direction = mirror;
+        ratio = 2.0 * tanOfHalfAngle(cosHalfAngleOfLobe(specular.w));
+        weight = cosMirror;
+        number = kGlossyCone;
+      }
+#endif
+      vec3 arriving = weight * traceCone(position.xyz, direction, ratio, number);
+      if (i < kCones)
+        diffuse += arriving;
+      else
+        glossy += arriving;
+    }
+#if DIFFUSE
+    diffuse *= albedo;
+#endif
+#if GLOSSY
+    glossy *= specular.rgb;
+#endif
+  }
+#if DIFFUSE
+  imageStore(diffuseImage, pixel, vec4(diffuse, 1.0));
+#endif
+#if GLOSSY
+  imageStore(glossyImage, pixel, vec4(glossy, 1.0));
+#endif
+}

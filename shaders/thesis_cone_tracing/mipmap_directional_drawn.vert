@@ -1,0 +1,10 @@
+#version 450
+// The same as a draw without attributes (Table 1).
+#include "drawn.glsl"
+#include "mipmap_directional.glsl"
+
+void main() {
+  ivec3 cell = voxelOfVertex(coarse);
+  if (all(lessThan(cell, coarse))) mipmapCell(cell);
+  drawNothing();
+}

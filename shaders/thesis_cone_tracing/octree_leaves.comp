@@ -1,0 +1,31 @@
+#version 450
+// What fragments are, averaged in the voxels of the leaves, each found from the root (Sec. 4.2.2, Listing 4.23): the light that they reflect
+// without a lamp, their colours, or their normals as the thesis packs them, half of each plus a half.
+layout(local_size_x = 64) in;
+#include "common/constants.glsl"
+#include "common/fragments.glsl"
+#include "octree_levels.glsl"
+#include "octree_sums.glsl"
+
+const int kLight = 0, kColour = 1, kNormal = 2;
+layout(constant_id = 1) const int what = kLight;
+
+layout(std140, binding = 0) uniform Surfaces { float ambient; };  // irradiance, W/m^2
+
+void main() {
+  uint index = listIndex();
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  ivec3 voxel = unpackVoxel(fragment.voxel), own = voxel & 1;
+  uint brick = brickAt(voxel >> 1, octreeDepth);
+  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return;  // there was too little room, and the frame is not shown
+  vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
+  vec3 value = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
+  if (what == kLight) value = value / kPi * ambient;
+  if (what == kNormal) value = 0.5 + 0.5 * unpackNormal(fragment.normal);
+  uint place = sumsOf(brick, uint(own.x | own.y << 1 | own.z << 2));
+  if (stage == kCount)
+    countIn(place, value);
+  else
+    addTo(place, unitsOf(place, value) * (clamp(blueCoverage.y, 0.0, 1.0) * (1.0 / float(max(sums[place].items, 1u)))));
+}

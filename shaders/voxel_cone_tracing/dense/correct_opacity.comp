@@ -1,9 +1,0 @@
-#version 450
-// Thesis 004 Sec. 4.2.1, Listing 4.10, one invocation a voxel; its work groups of 8 x 8 x 8.
-#include "correct_opacity.glsl"
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 8) in;
-
-void main() {
-  ivec3 voxel = ivec3(gl_GlobalInvocationID);
-  if (all(lessThan(voxel, resolution))) correctOpacity(voxel);
-}
