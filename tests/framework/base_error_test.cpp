@@ -8,6 +8,7 @@
 
 using namespace lumivox;
 using Catch::Matchers::Contains;
+using lumivox::test::Tells;
 
 TEST_CASE("a diagnostic shows place, finding, expectation, suggestion, line and caret") {
   Diagnostic diagnostic;
@@ -48,7 +49,7 @@ TEST_CASE("all findings are reported together and stay available one by one") {
   second.place = {"f", 2, 1};
   second.what = "two";
   const DiagnosticsError error({first, second});
-  REQUIRE_THAT(error.what(), Contains("f:1:1: one") && Contains("f:2:1: two"));
+  REQUIRE_THAT(error.what(), Tells("f:1:1: one", "f:2:1: two"));
   REQUIRE(error.diagnostics().size() == 2);
   REQUIRE_THROWS_AS(throw DiagnosticsError({first}), Error);
 }
@@ -149,4 +150,6 @@ TEST_CASE("facts of a message are whole words and numbers in their order") {
   for (const char* absent : {"widt", "idth", "5", "2", "4", "size", "a.scen"})
     CHECK_THAT(text, !Tells(absent));
   CHECK_THAT(text, !Tells(0) && !Tells("width", "a.scene:3:5") && !Tells("width", "width"));
+  CHECK_THAT(text + "\n  width height\n  ^",
+             !Tells("height") && !Tells("^"));  // the source line and its caret
 }

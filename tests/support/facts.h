@@ -21,10 +21,11 @@ class Tells : public Catch::MatcherBase<std::string> {
   explicit Tells(const Facts&... facts) : facts_{wordOf(facts)...} {}
 
   bool match(const std::string& text) const override {
+    const std::string said = withoutSource(text);
     std::size_t from = 0;
     for (const std::string& fact : facts_) {
-      std::size_t at = text.find(fact, from);
-      while (at != std::string::npos && !isWhole(text, at, at + fact.size())) at = text.find(fact, at + 1);
+      std::size_t at = said.find(fact, from);
+      while (at != std::string::npos && !isWhole(said, at, at + fact.size())) at = said.find(fact, at + 1);
       if (at == std::string::npos) return false;
       from = at + fact.size();
     }
@@ -48,6 +49,16 @@ class Tells : public Catch::MatcherBase<std::string> {
       text << fact;
       return text.str();
     }
+  }
+
+  /// Without the source line and the caret of a Diagnostic, which begin with two blanks: they hold every name
+  /// of the input.
+  static std::string withoutSource(const std::string& text) {
+    std::istringstream lines(text);
+    std::string said;
+    for (std::string line; std::getline(lines, line);)
+      if (line.rfind("  ", 0) != 0) said += line + "\n";
+    return said;
   }
 
   static bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
