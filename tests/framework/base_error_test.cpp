@@ -3,10 +3,12 @@
 #include <cstdint>
 
 #include "lumivox/base/error.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using Catch::Matchers::Contains;
+using lumivox::test::Tells;
 
 TEST_CASE("a diagnostic shows place, finding, expectation, suggestion, line and caret") {
   Diagnostic diagnostic;
@@ -47,7 +49,7 @@ TEST_CASE("all findings are reported together and stay available one by one") {
   second.place = {"f", 2, 1};
   second.what = "two";
   const DiagnosticsError error({first, second});
-  REQUIRE_THAT(error.what(), Contains("f:1:1: one") && Contains("f:2:1: two"));
+  REQUIRE_THAT(error.what(), Tells("f:1:1: one", "f:2:1: two"));
   REQUIRE(error.diagnostics().size() == 2);
   REQUIRE_THROWS_AS(throw DiagnosticsError({first}), Error);
 }
@@ -138,4 +140,16 @@ TEST_CASE("the nearest word is the one that the whole table of edit distances fi
     REQUIRE(nearestWord(wrong, known) == best);
   }
   CHECK(found > 400);
+}
+
+TEST_CASE("facts of a message are whole words and numbers in their order") {
+  const std::string text = "a.scene:3:5: 'width' is 0.5, not -2 in 1..64; expected size_2";
+  using test::Tells;
+  CHECK_THAT(text, Tells("a.scene:3:5", "width", 0.5, -2, 1, 64, "size_2"));
+  CHECK_THROWS_MATCHES(throw Error(text), Error, Tells("a.scene:3", 0.5));
+  for (const char* absent : {"widt", "idth", "5", "2", "4", "size", "a.scen"})
+    CHECK_THAT(text, !Tells(absent));
+  CHECK_THAT(text, !Tells(0) && !Tells("width", "a.scene:3:5") && !Tells("width", "width"));
+  CHECK_THAT(text + "\n  width height\n  ^",
+             !Tells("height") && !Tells("^"));  // the source line and its caret
 }
