@@ -64,7 +64,7 @@ class TracePass : public Pass {
       "paths end by chance, the more often the less light they carry; the others count more"};
   Param<float> radius{
       this, "radius", 0.0f, within(0.0f, 1e9f), "m", "length of a ray; 0: through all of the grid"};
-  BackProjection projection{this};
+  lumivox::BackProjection projection{this};
   PublishedForm asPublished{this,
                             "the tests of Listing 4.49 whether a texel of the map shows the end of a ray"};
   Out<Image> arriving{this, "arriving", Contributes::nothing, Needs::nothing,
@@ -193,9 +193,11 @@ class TracePass : public Pass {
     const shader::BoundProgram& program =
         frame.program(variantOf(trace::Variant{.arriving = outputs.arriving, .reflected = outputs.reflected}),
                       constantsOf<trace::Constants>());
-    const shader::BindingSet states{scene, trace::sums(sums), trace::pathStart(frame.image("starts of rays")),
-                                    trace::pathDirection(frame.image("directions of rays")),
-                                    trace::pathThroughput(frame.image("throughputs of paths"))};
+    const gpu::TextureRef starts = frame.image("starts of rays"),
+                          directions = frame.image("directions of rays"),
+                          throughputs = frame.image("throughputs of paths");
+    const shader::BindingSet states{scene, trace::sums(sums), trace::pathStart(starts),
+                                    trace::pathDirection(directions), trace::pathThroughput(throughputs)};
     for (int i = 0; i < samples; ++i, ++path.number)
       for (path.bounce = 1; path.bounce <= bounces; ++path.bounce)
         frame.dispatch(program, {states, trace::path(path)}, pixels(frame));
@@ -218,17 +220,16 @@ class TracePass : public Pass {
         },
         "bounces of 'order backward'");
     const auto vertices = [&](const char* label) { return frame.texture(layersOf(size, bounces), label); };
-    const gpu::TextureRef place = vertices("surfaces of paths"), light = vertices("light of their surfaces"),
-                          reflection = vertices("reflection of their surfaces"),
+    const gpu::TextureRef place = vertices("surfaces of paths"), normal = vertices("their normals"),
+                          light = vertices("their light"), reflection = vertices("their reflection"),
+                          specular = variant.glossy ? vertices("their Phong lobes") : nullptr,
+                          toViewer = variant.glossy ? vertices("directions back along paths") : nullptr,
                           weights = frame.image("first weights of paths"),
                           back = frame.image("carried light");
-    shader::BindingSet stored{record::vertexPlace(place), record::vertexLight(light),
-                              record::vertexReflection(reflection), record::firstWeights(weights)};
-    shader::BindingSet recorded{scene, stored, record::vertexNormal(vertices("normals of their surfaces"))};
-    if (variant.glossy) {
-      recorded.add(record::vertexSpecular(vertices("Phong lobes of their surfaces")));
-      recorded.add(record::vertexToViewer(vertices("directions back along them")));
-    }
+    const shader::BindingSet stored{record::vertexPlace(place), record::vertexLight(light),
+                                    record::vertexReflection(reflection), record::firstWeights(weights)},
+        recorded{scene, stored, record::vertexNormal(normal), record::vertexSpecular(specular),
+                 record::vertexToViewer(toViewer)};
     const shader::BoundProgram& forwards = frame.program(variant, constantsOf<record::Constants>());
     const shader::BoundProgram& backwards =
         frame.program(bring_back::Variant{.arriving = outputs.arriving, .reflected = outputs.reflected});

@@ -1,5 +1,7 @@
 // Paths through bits on committed scenes: against the reference of the boxes, which knows the same bits, map
 // and averages and nothing else of them; and against the path-traced reference of the triangles.
+#include <set>
+
 #include "lumivox/reference/voxel_transport.h"
 #include "support/against_reference.h"
 #include "support/kept_table.h"
@@ -156,4 +158,50 @@ TEST_CASE("two and eight bounces of paths differ from the reference of the boxes
     CHECK(within >= 0.99 * compared);
     CHECK(sum / right == Approx(1.0).epsilon(0.003));
   }
+}
+
+namespace {
+
+/// Indirect light of the pipeline without smoothing, so that what is left of the error is bias and noise.
+Against errorOf(const Scene& scene, int side, int samples, int bounces, const std::string& layer,
+                const std::string& output = "indirect_diffuse") {
+  ReferenceOptions options = quietly(1024, 1);
+  options.width = options.height = side;
+  options.useCache = true;
+  options.bounceLayers = {2, 8};
+  const LayeredImage reference = cachedReference(scene, options);
+  Pipeline text = pipeline("voxel_path_tracing");
+  const FrameResult frame = pictured(
+      scene, {side, side}, text,
+      {"resolution=128", "samples=" + std::to_string(samples), "bounces=" + std::to_string(bounces)});
+  return against(reference, frame.outputs.at(output), layer, 0.0f);
+}
+
+}  // namespace
+
+TEST_CASE("paths of eight bounces show all of the Cornell box's indirect light") {
+  const Against found = errorOf(committed("cornell"), 32, 128, 8, "indirect_diffuse");
+  CAPTURE(found.rmse, found.ratio);
+  CHECK(found.rmse < 0.15);
+  CHECK(found.ratio == Approx(1.0).epsilon(0.05));
+}
+
+// The numbers of the card; minutes.
+TEST_CASE("errors of paths by bounces", "[.]") {
+  KeptTable table("voxel_path_tracing.errors", {{"error", 3, 0.01}, {"ratio", 2, 0.01}});
+  constexpr int kSide = 64, kSamples = 512;
+  const auto row = [&](const char* name, const Scene& scene, int bounces, const char* layer,
+                       const char* output) {
+    const Against found = errorOf(scene, kSide, kSamples, bounces, layer, output);
+    table.row(name, {found.rmse, found.ratio});
+  };
+  const Scene cornell = committed("cornell"), glossy = committed("cornell_glossy"),
+              arcade = committed("arcade");
+  row("cornell, 1 bounce", cornell, 1, "one_bounce_diffuse", "indirect_diffuse");
+  row("cornell, 2 bounces", cornell, 2, "bounces_2_diffuse", "indirect_diffuse");
+  row("cornell, 8 bounces, of as many", cornell, 8, "bounces_8_diffuse", "indirect_diffuse");
+  row("cornell, 8 bounces, of all light", cornell, 8, "indirect_diffuse", "indirect_diffuse");
+  row("cornell_glossy, 8 bounces, diffuse, of all light", glossy, 8, "indirect_diffuse", "indirect_diffuse");
+  row("cornell_glossy, 8 bounces, glossy, of all light", glossy, 8, "indirect_glossy", "indirect_glossy");
+  row("arcade, 8 bounces, of all light", arcade, 8, "indirect_diffuse", "indirect_diffuse");
 }

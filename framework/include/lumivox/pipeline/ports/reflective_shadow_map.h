@@ -14,8 +14,8 @@ struct ReflectiveShadowMap {
   gpu::TextureRef normal;
   gpu::TextureRef flux;
   /// What the surfaces reflect, for paths that go on from them: null unless a reader asks for it.
-  gpu::TextureRef albedo;
-  gpu::TextureRef specular;  ///< null also where nothing is glossy
+  gpu::TextureRef albedo = nullptr;
+  gpu::TextureRef specular = nullptr;  ///< null also where nothing is glossy
   int lightCount = 0;
   int layerCount = 0;
 };
