@@ -149,7 +149,7 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
   return hit;
 }
 #elif BIT_RULE == BIT_RULE_PRINTED
-// C++ side: RayMethod::binding() in techniques/near_field_voxels/rays.cpp.
+// C++ side: RayMethod::binding() in framework/src/toolkit/voxel_rays.cpp.
 layout(std140, binding = 7) uniform Printed {
   int printedSteps;     // most that a ray makes; one that has made them counts as free, as printed
   float printedOffset;  // behind each exit, voxels

@@ -10,9 +10,9 @@
 #pragma lumivox require ARRIVING || RADIANCE == none
 #include "common/cones.glsl"
 #include "common/random.glsl"
-#include "grid.glsl"
+#include "common/bit_rays.glsl"
 #if RADIANCE == RADIANCE_MAP
-#include "back_projection.glsl"
+#include "common/back_projection.glsl"
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -33,13 +33,13 @@ layout(std140, binding = 1) uniform Rays {
   int rays;              // of a pixel and frame
   int firstRay;          // that this dispatch takes, and how many
   int raysAtOnce;
-  int framesBefore;      // that are in `earlier`
+  int framesBefore;      // whose rays are in the earlier sums
   float offset;          // of the start along the normal; see startOf()
   float start;           // along the ray, voxels
   float reach;           // of light along the ray, from where `start` is 0, voxels
   float occlusionReach;  // of occlusion
   int beyondRadius;      // 1: the environment begins there; 0: behind the grid
-  int first;             // 1: no light has been added yet
+  int first;             // 1: no light of this frame has been added yet
   int last;              // 1: the mean of the light is written
   int addsRest;          // 1: what rays bring beside light of the map is added; 0: another dispatch did so
   float scale;           // of what arrives
@@ -47,13 +47,19 @@ layout(std140, binding = 1) uniform Rays {
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
-layout(binding = 6) uniform sampler2D earlierArriving;   // means over the frames before
-layout(binding = 7) uniform sampler2D earlierOcclusion;
+// Sums over all rays of the frames before and of this one. That of the light has beside it what rounding has lost of it (Kahan 1965), so that
+// frames of few rays and one frame of many are the same, to the bit.
+layout(binding = 6) uniform sampler2D earlierLight;
+layout(binding = 11) uniform sampler2D earlierLost;
+layout(binding = 7) uniform sampler2D earlierOpen;
 #if ARRIVING
-layout(binding = 0, rgba32f) uniform image2D arrivingImage;
+layout(binding = 0, rgba32f) uniform writeonly image2D arrivingImage;
+layout(binding = 3, rgba32f) uniform image2D lightSum;
+layout(binding = 4, rgba32f) uniform image2D lostSum;
 #endif
 #if OCCLUSION
-layout(binding = 1, rgba32f) uniform image2D occlusionImage;
+layout(binding = 1, rgba32f) uniform writeonly image2D occlusionImage;
+layout(binding = 5, rgba32f) uniform image2D openSum;
 #endif
 #if FETCHES
 layout(binding = 2, rgba32f) uniform image2D fetchImage;
@@ -79,23 +85,13 @@ vec2 pointOf(int i, uvec2 turn) {
     float along = (float(i) + 0.5) / float(rays);
     return vec2(fract(along + unitInterval(turn).x), unitInterval(uvec2(bitfieldReverse(uint(i)) + turn.y)).x);
   }
-  // R2 (Roberts 2018): multiples of the powers of 1 / 1.32472 in parts of 2^32, so that no ray is too many.
-  uint number = uint(framesBefore) * uint(rays) + uint(i);
-  return unitInterval(number * uvec2(3242174889u, 2447445413u) + 0x80000000u + turn);
+  // A sequence that frames that accumulate go on with.
+  return unitInterval(wordsOfR2(uint(framesBefore) * uint(rays) + uint(i), turn));
 }
 
-// Listing 4.45.
-vec3 directionOf(vec2 point, vec3 tangent, vec3 bitangent, vec3 normal) {
-  float radius = sqrt(point.x * spread), angle = 2.0 * kPi * point.y;
-  float x = radius * cos(angle), y = radius * sin(angle);
-  return normalize(x * tangent + y * bitangent + sqrt(max(1.0 - x * x - y * y, 0.0)) * normal);
-}
-
-// Where the rays of a surface begin, in voxels. No voxel that a plane touches reaches further from it than the sum of the sides of its
-// normal; the sixteenth keeps a plane that lies in the faces of voxels off the next ones.
+// Where the rays of a surface begin, in voxels.
 vec3 startOf(vec3 posWorld, vec3 geometricNormal) {
-  vec3 sides = abs(geometricNormal);
-  float unit = offsetByDiagonal != 0 ? sqrt(3.0) : sides.x + sides.y + sides.z + 1.0 / 16.0;
+  float unit = offsetByDiagonal != 0 ? sqrt(3.0) : reachOfPlane(geometricNormal);
   return (posWorld - gridLow) / voxelSize + geometricNormal * (offset * unit);
 }
 
@@ -121,9 +117,18 @@ vec3 radianceOf(BitHit hit) {
 #endif
 
 struct Sums {
-  vec3 light;
+  vec3 light, lost;
   float open, fetches;
 };
+
+void addLight(inout Sums sums, vec3 light) {
+  precise vec3 before = sums.light;
+  precise vec3 added = light - sums.lost;
+  precise vec3 after = before + added;
+  precise vec3 rest = (after - before) - added;
+  sums.light = after;
+  sums.lost = rest;
+}
 
 void follow(vec3 origin, vec3 direction, inout Sums sums) {
   float lightReach = reach - start;
@@ -132,27 +137,27 @@ void follow(vec3 origin, vec3 direction, inout Sums sums) {
   bool meets = hit.found && hit.t <= lightReach;
   if (!(hit.found && hit.t <= occlusionReach - start)) sums.open += 1.0;
   bool beyond = beyondRadius != 0 ? !meets : !hit.found && leavesGrid() <= lightReach;
-  if (beyond && addsRest != 0) sums.light += environment;
+  if (beyond && addsRest != 0) addLight(sums, environment);
 #if RADIANCE != RADIANCE_NONE
-  if (meets) sums.light += radianceOf(hit);
+  if (meets) addLight(sums, radianceOf(hit));
 #endif
 }
-
-#if ARRIVING || OCCLUSION
-// The mean over the rays of all frames, when the last of them are in.
-vec4 finished(vec4 sum, float factor, vec4 earlier) {
-  vec4 mean = sum * (factor / float(rays));
-  if (framesBefore > 0) mean = (earlier * float(framesBefore) + mean) / float(framesBefore + 1);
-  return mean;
-}
-#endif
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = textureSize(gPosition, 0);
   if (any(greaterThanEqual(every * at, size))) return;
   ivec2 pixel = min(every * at + every / 2, size - 1);
   vec4 position = texelFetch(gPosition, pixel, 0);
-  Sums sums = Sums(vec3(0.0), 0.0, 0.0);
+  Sums sums = Sums(vec3(0.0), vec3(0.0), 0.0, 0.0);
+#if ARRIVING
+  if (first == 0) {
+    sums.light = imageLoad(lightSum, at).rgb;
+    sums.lost = imageLoad(lostSum, at).rgb;
+  } else if (framesBefore > 0) {
+    sums.light = texelFetch(earlierLight, at, 0).rgb;
+    sums.lost = texelFetch(earlierLost, at, 0).rgb;
+  }
+#endif
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
     vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
@@ -162,23 +167,25 @@ void main() {
     receiver = position.xyz;
 #endif
     for (int i = firstRay; i < firstRay + raysAtOnce; ++i) {
-      vec3 direction = directionOf(pointOf(i, turn), tangent, bitangent, normal);
+      vec3 direction = cosineDirection(pointOf(i, turn), spread, tangent, bitangent, normal);
       follow(origin + start * direction, direction, sums);
     }
   }
   bool surface = position.w > 0.0;
+  float allRays = float(framesBefore + 1) * float(rays);
 #if ARRIVING
-  vec4 arriving = vec4(sums.light, 0.0);
-  if (first == 0) arriving += imageLoad(arrivingImage, at);
-  if (last != 0) arriving = vec4(finished(arriving, scale, texelFetch(earlierArriving, at, 0)).rgb, surface ? 1.0 : 0.0);
-  imageStore(arrivingImage, at, arriving);
+  imageStore(lightSum, at, vec4(sums.light, 1.0));
+  imageStore(lostSum, at, vec4(sums.lost, 1.0));
+  if (last != 0) imageStore(arrivingImage, at, vec4(sums.light * (scale / allRays), surface ? 1.0 : 0.0));
 #endif
 #if OCCLUSION
   if (addsRest != 0) {
-    vec4 open = vec4(sums.open);
-    if (firstRay > 0) open += imageLoad(occlusionImage, at);
-    if (firstRay + raysAtOnce == rays) open = vec4(vec3(surface ? finished(open, 1.0, texelFetch(earlierOcclusion, at, 0)).x : 1.0), surface ? 1.0 : 0.0);
-    imageStore(occlusionImage, at, open);
+    float open = sums.open;  // whole numbers: nothing is lost
+    if (firstRay > 0) open += imageLoad(openSum, at).x;
+    else if (framesBefore > 0) open += texelFetch(earlierOpen, at, 0).x;
+    imageStore(openSum, at, vec4(open));
+    if (firstRay + raysAtOnce == rays)
+      imageStore(occlusionImage, at, vec4(vec3(surface ? open * (1.0 / allRays) : 1.0), surface ? 1.0 : 0.0));
   }
 #endif
 #if FETCHES

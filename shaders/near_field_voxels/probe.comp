@@ -1,6 +1,6 @@
 #version 450
 // One ray a pixel through the bits, for tests and measurements.
-#include "grid.glsl"
+#include "common/bit_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -2,6 +2,9 @@
 // Dachsbacher & Stamminger 2005, Sec. 4.1: position, normal and reflected flux of what each texel of a light's view sees.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
+#pragma lumivox axis SURFACES 0 1  // what the surfaces reflect is kept beside their flux
+#pragma lumivox axis GLOSSY 0 1    // their Phong lobe too
+#pragma lumivox require SURFACES || !GLOSSY
 #define SCENE_MATERIALS
 #include "common/lights.glsl"
 #include "common/scene.glsl"
@@ -29,6 +32,12 @@ layout(location = 2) in vec2 texcoord;
 layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outNormal;
 layout(location = 2) out vec4 outFlux;
+#if SURFACES
+layout(location = 3) out vec4 outAlbedo;
+#if GLOSSY
+layout(location = 4) out vec4 outSpecular;
+#endif
+#endif
 
 // At a more grazing angle a texel stands for no larger patch: it would be longer than what one texel can tell of.
 const float kSmallestCosine = 0.02;
@@ -57,4 +66,10 @@ void main() {
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
   // The flux through the cross-section, whatever the slant: exact also where the patch is seen edge-on.
   outFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
+#if SURFACES
+  outAlbedo = vec4(albedo, 1.0);
+#if GLOSSY
+  outSpecular = materials[materialIndex].specular;
+#endif
+#endif
 }

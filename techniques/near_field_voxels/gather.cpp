@@ -8,10 +8,9 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/grid_placement.h"
-#include "lumivox/toolkit/light_samples.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "near_field_voxels_shaders.h"
-#include "rays.h"
+#include "passes.h"
 
 namespace lumivox::near_field_voxels {
 
@@ -22,10 +21,6 @@ namespace gather = shaders::near_field_voxels::gather;
 // In the order of their numbers in gather.comp.
 enum class HitPoint { middle, entry, centre, printed };
 enum class Rotation { hash, tile, none };
-
-constexpr float kLargestTolerance = 1000.0f;
-// Smallest cosine between a surface and the light: that of the map's areas, and the printed one.
-constexpr float kLeastCosine = 0.02f, kPrintedLeastCosine = 0.001f;
 
 class GatherPass : public Pass {
   enum class Sequence { r2, hammersley };
@@ -86,15 +81,7 @@ class GatherPass : public Pass {
       this, "hit", HitPoint::middle,
       "point of a hit that is projected into 'map'; middle: midway through the voxel along the ray; entry: where the ray enters; centre: the voxel's centre; printed: x and y of the entry, z of the centre",
       published(HitPoint::printed)};
-  Param<int> taps{this, "taps", 1, within(1, 4),
-                  "texels of the map read for each hit: 1, or 4 with bilinear weights"};
-  Param<float> tolerance{
-      this, "tolerance", 1.0f, within(0.0f, kLargestTolerance),
-      "factor on the largest distance between a hit and its texel's surface at which the texel counts; the largest value: no limit"};
-  Param<float> cap{
-      this, "cap", 4.0f, within(0.0f, 1000.0f),
-      "bound of this distance, in diagonals of a voxel (Listing 4.49); 0: no bound (Sec. 3.2.3)"};
-  Param<bool> front{this, "front", true, "surfaces that face away from the receiver contribute nothing"};
+  BackProjection projection{this};
   PublishedForm asPublished{
       this,
       "Sec. 3.2.3 and Listings 4.45 to 4.49 with their errors: the estimator has one factor 1 / pi too many, cosines to the light count from 0.001 on, and 'tolerance' scales only the side of the map's texel, before the bounds by 'cap' and the voxel"};
@@ -112,9 +99,7 @@ class GatherPass : public Pass {
     if (&input == &map) return arriving.wanted() && radiance == Radiance::map;
     return &input != &voxels || (arriving.wanted() && radiance == Radiance::voxels);
   }
-  std::string checkParameters() const override {
-    return taps == 1 || taps == 4 ? std::string() : fmt::format("'taps' is {}; expected 1 or 4", int(taps));
-  }
+  std::string checkParameters() const override { return projection.check(); }
 
   bool readsMap() const { return radiance == Radiance::map && map.present() && map->lightCount > 0; }
 
@@ -130,15 +115,7 @@ class GatherPass : public Pass {
             "near_field_voxels.gather: 'bits' have {}, and 'voxels' {}; expected one grid for both",
             inWords(bits->grid), inWords(voxels->grid)));
     }
-    if (!readsMap()) return;
-    const auto lights = map->lights->sizeBytes() / sizeof(LightSampleData),
-               views = map->views->sizeBytes() / sizeof(glm::mat4);
-    const auto layers = static_cast<std::uint64_t>(map->position->description().depth);
-    const auto wanted = static_cast<std::uint64_t>(map->layerCount);
-    if (lights < static_cast<std::uint64_t>(map->lightCount) || views < wanted || layers < wanted)
-      throw Error(fmt::format(
-          "near_field_voxels.gather: 'map' tells of {} lights in {} layers, and holds {} lights, {} views and {} layers; expected those of one reflective shadow map",
-          map->lightCount, map->layerCount, lights, views, layers));
+    if (readsMap()) requireWhole(*map, "near_field_voxels.gather");
   }
 
   float reachOf(PassContext& frame) const {
@@ -167,8 +144,8 @@ class GatherPass : public Pass {
   int every() const { return 1 << static_cast<int>(static_cast<Pixels>(pixelsOf)); }
 
   gather::Constants constantsOf() const {
-    return {.taps = taps,
-            .frontTest = front,
+    return {.taps = projection.taps(),
+            .frontTest = projection.front(),
             .hitPoint = static_cast<int>(static_cast<HitPoint>(hit)),
             .rotation = static_cast<int>(static_cast<Rotation>(rotation)),
             .hammersley = sequence == Sequence::hammersley,
@@ -183,12 +160,18 @@ class GatherPass : public Pass {
         (pixels(frame) + glm::ivec3(apart - 1, apart - 1, 0)) / glm::ivec3(apart, apart, 1);
     const gpu::TextureDescription ofSamples{
         .format = gpu::Format::rgba32f, .width = samples.x, .height = samples.y};
-    const History<gpu::TextureRef> light = arriving.wanted() ? frame.history(ofSamples, "arriving radiance")
-                                                             : History<gpu::TextureRef>{},
-                                   open = occlusion.wanted() ? frame.history(ofSamples, "unoccluded share")
-                                                             : History<gpu::TextureRef>{};
-    gpu::TextureRef counted;
-    if (fetches.wanted()) counted = frame.texture(ofSamples, "texels that rays read");
+    const auto summed = [&](bool wanted, const char* label) {
+      return wanted ? frame.history(ofSamples, label) : History<gpu::TextureRef>{};
+    };
+    const auto written = [&](bool wanted, const char* label) {
+      return wanted ? frame.texture(ofSamples, label) : nullptr;
+    };
+    const History<gpu::TextureRef> light = summed(arriving.wanted(), "light of all rays"),
+                                   lost = summed(arriving.wanted(), "what its sum has lost"),
+                                   open = summed(occlusion.wanted(), "unoccluded rays");
+    const gpu::TextureRef arrives = written(arriving.wanted(), "arriving radiance"),
+                          unoccluded = written(occlusion.wanted(), "unoccluded share"),
+                          counted = written(fetches.wanted(), "texels that rays read");
     const bool goesOn = (!arriving.wanted() || light.previous) && (!occlusion.wanted() || open.previous);
     gather::Rays parameters = parametersOf(frame, goesOn ? frame.accumulated() : 0);
     const bool fromMap = arriving.wanted() && readsMap();
@@ -202,23 +185,28 @@ class GatherPass : public Pass {
                                   .bitRule = method.axis()};
     const shader::BoundProgram& program = frame.program(variant, constantsOf());
     // Heeded only where there are frames before; something must be bound.
-    const gpu::TextureRef &earlierLight = light.previous ? light.previous : gbuffer->position,
-                          &earlierOpen = open.previous ? open.previous : gbuffer->position;
+    const auto earlier = [&](const History<gpu::TextureRef>& sum) -> const gpu::TextureRef& {
+      return sum.previous ? sum.previous : gbuffer->position;
+    };
     shader::BindingSet bound{GBufferBinding(*gbuffer),
                              method.binding(frame, *bits),
-                             gather::arrivingImage(light.current),
-                             gather::occlusionImage(open.current),
+                             gather::arrivingImage(arrives),
+                             gather::lightSum(light.current),
+                             gather::lostSum(lost.current),
+                             gather::occlusionImage(unoccluded),
+                             gather::openSum(open.current),
                              gather::fetchImage(counted),
-                             gather::earlierArriving(earlierLight, gpu::Sampling::nearest),
-                             gather::earlierOcclusion(earlierOpen, gpu::Sampling::nearest)};
+                             gather::earlierLight(earlier(light), gpu::Sampling::nearest),
+                             gather::earlierLost(earlier(lost), gpu::Sampling::nearest),
+                             gather::earlierOpen(earlier(open), gpu::Sampling::nearest)};
     if (fromMap) bound.add(ReflectiveShadowMapBinding(*map));
     if (voxels.present() && radiance == Radiance::voxels) {
       bound.add(gather::radianceGrid(voxels->radiance, gpu::Sampling::nearest));
       bound.add(gather::radiance({.radianceUnit = voxels->unit}));
     }
     dispatchAll(frame, program, bound, parameters, fromMap ? map->lightCount : 0, samples);
-    if (arriving.wanted()) arriving = Image{light.current};
-    if (occlusion.wanted()) occlusion = Image{open.current, false};
+    if (arriving.wanted()) arriving = Image{arrives};
+    if (occlusion.wanted()) occlusion = Image{unoccluded, false};
     if (fetches.wanted()) fetches = Image{counted, false};
   }
 
@@ -226,7 +214,6 @@ class GatherPass : public Pass {
   /// are very many, of the lights.
   void dispatchAll(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
                    gather::Rays& parameters, int lights, glm::ivec3 samples) const {
-    const float diagonal = std::sqrt(3.0f) * bits->grid.voxelSize;
     const std::int64_t ofRay = method.turns(*bits), ofLight = 1 + 4;
     // Half of the limit at most, so that a ray has room beside them.
     const int lightsAtOnce = portionOf(lights, 2 * ofLight);
@@ -238,16 +225,10 @@ class GatherPass : public Pass {
         parameters.first = firstRay == 0 && light == 0;
         parameters.last = firstRay + raysAtOnce == rays && light + count == lights;
         parameters.addsRest = light == 0;
-        frame.dispatch(
-            program,
-            {bound, gather::rays(parameters),
-             gather::backProjection({.voxelDiagonal = diagonal,
-                                     .tolerance = tolerance < kLargestTolerance ? float(tolerance) : -1.0f,
-                                     .cap = cap > 0.0f ? cap * diagonal : -1.0f,
-                                     .leastCosine = asPublished ? kPrintedLeastCosine : kLeastCosine,
-                                     .firstLight = light,
-                                     .lightsAtOnce = count})},
-            samples);
+        frame.dispatch(program,
+                       {bound, gather::rays(parameters),
+                        projection.binding(bits->grid.voxelSize, asPublished, light, count)},
+                       samples);
       }
     });
   }

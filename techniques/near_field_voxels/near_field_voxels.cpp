@@ -1,6 +1,6 @@
 // Near-field voxels: Thiedemann, Henrich, Grosch & Mueller 2011, "Voxel-based global illumination"; thesis
 // Gomes 2015, Sec. 3.2 and 4.4.6. Rays through one bit a voxel, and light where they end.
-#include "rays.h"
+#include "passes.h"
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::near_field_voxels;

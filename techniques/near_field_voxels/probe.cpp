@@ -1,6 +1,6 @@
 // Rays that are given, for tests and measurements.
 #include "near_field_voxels_shaders.h"
-#include "rays.h"
+#include "passes.h"
 
 namespace lumivox::near_field_voxels {
 

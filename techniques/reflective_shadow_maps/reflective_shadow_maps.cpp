@@ -2,6 +2,7 @@
 // Sec. 2.2. What every light sees, as a source of one-bounce light, and gathering from it without visibility.
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
@@ -21,18 +22,26 @@ class RenderPass : public LightViewPass {
 
  private:
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};
+  Out<ReflectiveShadowMap> surfaces{
+      this, "surfaces", "the same map with the albedo and the Phong lobe of what each light sees"};
 
   void run(PassContext& frame) override {
     const LightViews views = placed(frame);
     const auto layers = [&](const char* label) { return views.layers(frame, gpu::Format::rgba32f, label); };
-    const ReflectiveShadowMap result{views.lights,
-                                     views.views,
-                                     layers("positions"),
-                                     layers("normals and areas"),
-                                     layers("reflected flux"),
-                                     views.lightCount(),
-                                     views.layerCount()};
-    const std::array<gpu::TextureRef, 3> colours{result.position, result.normal, result.flux};
+    ReflectiveShadowMap result{.lights = views.lights,
+                               .views = views.views,
+                               .position = layers("positions"),
+                               .normal = layers("normals and areas"),
+                               .flux = layers("reflected flux"),
+                               .lightCount = views.lightCount(),
+                               .layerCount = views.layerCount()};
+    std::vector<gpu::TextureRef> colours{result.position, result.normal, result.flux};
+    const render::Variant variant{.surfaces = surfaces.wanted(),
+                                  .glossy = surfaces.wanted() && frame.traits().glossy};
+    map = result;
+    if (variant.surfaces) colours.push_back(result.albedo = layers("albedos of what lights see"));
+    if (variant.glossy) colours.push_back(result.specular = layers("Phong lobes of what lights see"));
+    if (variant.surfaces) surfaces = result;
     if (result.lightCount == 0)
       for (const gpu::TextureRef& texture : colours) texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth =
@@ -44,11 +53,10 @@ class RenderPass : public LightViewPass {
       return one;
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
-      drawPart(frame, draw, render::Variant{},
+      drawPart(frame, draw, variant,
                {render::lights(result.lights),
                 render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})});
     });
-    map = result;
   }
 };
 

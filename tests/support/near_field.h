@@ -44,13 +44,13 @@ struct Setting {
   const char* word = nullptr;
 };
 
-/// The pass `gather` over a grid of metre-wide voxels.
+/// A pass that sends rays through a grid of metre-wide voxels: `gather`, or another technique's.
 class Gatherer {
  public:
   explicit Gatherer(const BinaryGrid& bits, const Scene& scene = SceneBuilder().scene, int width = 8,
-                    int height = 8)
+                    int height = 8, const char* technique = "near_field_voxels", const char* pass = "gather")
       : scene_(withImage(scene, width, height)),
-        harness_(std::make_unique<PassHarness>(device(), techniques(), "near_field_voxels", "gather", *scene_,
+        harness_(std::make_unique<PassHarness>(device(), techniques(), technique, pass, *scene_,
                                                snapshotOf(*scene_, 0.0))) {
     harness_->setInput("bits", bits);
   }

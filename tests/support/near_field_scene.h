@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,28 +52,43 @@ class MapOnHost {
         position_(map.position->downloadFloats(0)),
         normal_(map.normal->downloadFloats(0)),
         flux_(map.flux->downloadFloats(0)),
+        albedo_(map.albedo ? map.albedo->downloadFloats(0) : std::vector<float>()),
         side_(map.position->description().width) {
     lights_.resize(static_cast<std::size_t>(map.lightCount));
   }
 
   glm::dvec3 radianceAt(const glm::dvec3& point, const glm::dvec3& toReceiver, double voxelSize) const {
     glm::dvec3 sum(0.0);
-    for (const LightSampleData& light : lights_) sum += ofLight(light, point, toReceiver, voxelSize);
+    for (const LightSampleData& light : lights_)
+      if (const auto texel = showing(light, point, toReceiver, voxelSize))
+        sum += at(flux_, *texel) / (3.14159265358979323846 * normal_[4 * *texel + 3]);
     return sum;
+  }
+  /// Of the first light that lights the point; none: in shadow.
+  struct Surface {
+    glm::dvec3 normal, albedo;
+  };
+  std::optional<Surface> surfaceAt(const glm::dvec3& point, const glm::dvec3& toReceiver,
+                                   double voxelSize) const {
+    for (const LightSampleData& light : lights_)
+      if (const auto texel = showing(light, point, toReceiver, voxelSize))
+        return Surface{at(normal_, *texel), at(albedo_, *texel)};
+    return std::nullopt;
   }
 
  private:
   std::vector<LightSampleData> lights_;
   std::vector<glm::mat4> views_;
-  std::vector<float> position_, normal_, flux_;
+  std::vector<float> position_, normal_, flux_, albedo_;
   int side_;
 
   static glm::dvec3 at(const std::vector<float>& texels, std::size_t texel) {
     return {texels[4 * texel], texels[4 * texel + 1], texels[4 * texel + 2]};
   }
 
-  glm::dvec3 ofLight(const LightSampleData& light, const glm::dvec3& point, const glm::dvec3& toReceiver,
-                     double voxelSize) const {
+  /// The texel in which a light shows the point.
+  std::optional<std::size_t> showing(const LightSampleData& light, const glm::dvec3& point,
+                                     const glm::dvec3& toReceiver, double voxelSize) const {
     const bool parallel = light.kind == LightSampleKind::directional;
     // The view that holds the point: the only one, or that of the six in which it is deepest.
     int layer = light.firstView;
@@ -83,21 +99,21 @@ class MapOnHost {
         layer = light.firstView + face;
     }
     const glm::dvec4 clip = glm::dmat4(views_[static_cast<std::size_t>(layer)]) * glm::dvec4(point, 1.0);
-    if (clip.w <= 0.0 || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) return glm::dvec3(0.0);
+    if (clip.w <= 0.0 || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) return std::nullopt;
     const int x = std::min(static_cast<int>((0.5 + 0.5 * clip.x / clip.w) * side_), side_ - 1),
               y = std::min(static_cast<int>((0.5 - 0.5 * clip.y / clip.w) * side_), side_ - 1);
     const auto texel = static_cast<std::size_t>((layer * side_ + y) * side_ + x);
     const double area = normal_[4 * texel + 3];
-    if (position_[4 * texel + 3] == 0.0f || area <= 0.0) return glm::dvec3(0.0);
+    if (position_[4 * texel + 3] == 0.0f || area <= 0.0) return std::nullopt;
     const glm::dvec3 place = at(position_, texel), normal = at(normal_, texel);
-    if (glm::dot(normal, toReceiver) < 0.0) return glm::dvec3(0.0);
+    if (glm::dot(normal, toReceiver) < 0.0) return std::nullopt;
     const glm::dvec3 toLight =
         parallel ? -glm::dvec3(light.direction) : glm::normalize(glm::dvec3(light.position) - place);
     const double diagonal = std::sqrt(3.0) * voxelSize, width = light.texelWidth * (parallel ? 1.0 : clip.w),
                  allowed =
                      std::clamp(width / std::max(glm::dot(normal, toLight), 0.02), diagonal, 4.0 * diagonal);
-    if (glm::distance(point, place) > allowed) return glm::dvec3(0.0);
-    return at(flux_, texel) / (3.14159265358979323846 * area);
+    if (glm::distance(point, place) > allowed) return std::nullopt;
+    return texel;
   }
 };
 

@@ -13,6 +13,9 @@ struct ReflectiveShadowMap {
   gpu::TextureRef position;
   gpu::TextureRef normal;
   gpu::TextureRef flux;
+  /// What the surfaces reflect, for paths that go on from them: null unless a reader asks for it.
+  gpu::TextureRef albedo = nullptr;
+  gpu::TextureRef specular = nullptr;  ///< null also where nothing is glossy
   int lightCount = 0;
   int layerCount = 0;
 };
@@ -29,7 +32,10 @@ struct PortTraits<ReflectiveShadowMap> {
              {"normal", "d2Array rgba32f",
               "unit normal towards the light; w = the surface area that the texel covers, m^2", kAny},
              {"flux", "d2Array rgba32f",
-              "diffusely reflected flux of the texel, W; w = number of the layer's light"}}};
+              "diffusely reflected flux of the texel, W; w = number of the layer's light"},
+             {"albedo", "d2Array rgba32f", "diffuse albedo; null unless asked for"},
+             {"specular", "d2Array rgba32f",
+              "Phong albedo, exponent in w; null unless asked for, and where nothing is glossy"}}};
   }
   static void contents(const ReflectiveShadowMap& port, PortContents& contents) {
     contents.buffer("lights", port.lights);
@@ -37,6 +43,8 @@ struct PortTraits<ReflectiveShadowMap> {
     contents.texture("position", port.position);
     contents.texture("normal", port.normal);
     contents.texture("flux", port.flux);
+    contents.texture("albedo", port.albedo);
+    contents.texture("specular", port.specular);
   }
 };
 

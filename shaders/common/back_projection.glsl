@@ -21,12 +21,12 @@ layout(std140, binding = 2) uniform BackProjection {
   int lightsAtOnce;
 };
 
-// What a texel shines to a receiver, W/(sr m^2): nothing when its surface is not at the point, or looks the other way.
-vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, vec3 toReceiver) {
+// Whether a texel shows the surface at the point, to a receiver on its lit side.
+bool showsPoint(LightSample light, ivec3 texel, float depth, vec3 point, vec3 toReceiver) {
   vec4 position = texelFetch(rsmPosition, texel, 0);
   vec4 normalArea = texelFetch(rsmNormal, texel, 0);
-  if (!(position.w > 0.0 && normalArea.w > 0.0)) return vec3(0.0);
-  if (frontTest != 0 && dot(normalArea.xyz, toReceiver) < 0.0) return vec3(0.0);
+  if (!(position.w > 0.0 && normalArea.w > 0.0)) return false;
+  if (frontTest != 0 && dot(normalArea.xyz, toReceiver) < 0.0) return false;
   if (tolerance >= 0.0) {
     bool parallel = light.kind == kLightDirectional;
     vec3 toLight = parallel ? -light.direction : normalize(light.position - position.xyz);
@@ -36,32 +36,50 @@ vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, ve
     float side = width / slant;
     float allowed = max(voxelDiagonal, printedTests != 0 ? tolerance * side : side);
     if (cap >= 0.0) allowed = min(allowed, cap);
-    if (distance(point, position.xyz) > (printedTests != 0 ? 1.0 : tolerance) * allowed) return vec3(0.0);
+    if (distance(point, position.xyz) > (printedTests != 0 ? 1.0 : tolerance) * allowed) return false;
   }
-  // Exitance, the flux of the texel over its area, goes to all sides alike.
-  return texelFetch(rsmFlux, texel, 0).rgb / (kPi * normalArea.w);
+  return true;
 }
+
+// What the diffuse surface of a texel shines, W/(sr m^2): exitance, the flux of the texel over its area, goes to all sides alike.
+vec3 diffuseOfTexel(ivec3 texel) { return texelFetch(rsmFlux, texel, 0).rgb / (kPi * texelFetch(rsmNormal, texel, 0).w); }
+
+vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, vec3 toReceiver) {
+  return showsPoint(light, texel, depth, point, toReceiver) ? diffuseOfTexel(texel) : vec3(0.0);
+}
+
+// Where a point lies in the view of a light: its layer, and its place in texels; false outside of the view. `depth`: along the view.
+bool placeInView(LightSample light, vec3 point, out int layer, out vec2 place, out float depth) {
+  layer = light.firstView;
+  if (light.firstView < 0) return false;
+  if (light.viewCount > 1) layer += cubeFace(point - light.position);
+  vec4 clip = views[layer] * vec4(point, 1.0);
+  depth = clip.w;
+  if (!(clip.w > 0.0)) return false;  // behind the light
+  vec2 projected = clip.xy / clip.w;
+  vec2 size = vec2(textureSize(rsmPosition, 0).xy);
+  place = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y) * size;
+  return all(greaterThanEqual(place, vec2(0.0))) && all(lessThanEqual(place, size));
+}
+
+// The texel at a place. The last one of a face holds its far edge too.
+ivec3 texelAt(vec2 place, int layer) { return ivec3(min(ivec2(place), textureSize(rsmPosition, 0).xy - 1), layer); }
 
 // Of one light, of any kind.
 vec3 backProjected(LightSample light, vec3 point, vec3 toReceiver) {
-  if (light.firstView < 0) return vec3(0.0);
-  int layer = light.firstView;
-  if (light.viewCount > 1) layer += cubeFace(point - light.position);
-  vec4 clip = views[layer] * vec4(point, 1.0);
-  if (!(clip.w > 0.0)) return vec3(0.0);  // behind the light
-  vec2 projected = clip.xy / clip.w;
+  int layer;
+  vec2 place;
+  float depth;
+  if (!placeInView(light, point, layer, place, depth)) return vec3(0.0);
+  if (taps == 1) return radianceOfTexel(light, texelAt(place, layer), depth, point, toReceiver);
   ivec2 size = textureSize(rsmPosition, 0).xy;
-  vec2 place = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y) * vec2(size);
-  if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(size)))) return vec3(0.0);
-  // The last texel of a face holds its far edge too.
-  if (taps == 1) return radianceOfTexel(light, ivec3(min(ivec2(place), size - 1), layer), clip.w, point, toReceiver);
   vec2 low = floor(place - 0.5), share = place - 0.5 - low;
   vec3 sum = vec3(0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 weight = mix(1.0 - share, share, vec2(step));
     ivec2 texel = clamp(ivec2(low) + step, ivec2(0), size - 1);
-    sum += weight.x * weight.y * radianceOfTexel(light, ivec3(texel, layer), clip.w, point, toReceiver);
+    sum += weight.x * weight.y * radianceOfTexel(light, ivec3(texel, layer), depth, point, toReceiver);
   }
   return sum;
 }

@@ -1,17 +1,39 @@
-#include "rays.h"
+#include "lumivox/toolkit/voxel_rays.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bit_grid.h"
-#include "near_field_voxels_shaders.h"
+#include "lumivox/toolkit/light_samples.h"
 
-namespace lumivox::near_field_voxels {
+namespace lumivox {
 
 namespace {
+
+/// Block Grid of common/bit_rays.glsl.
+struct alignas(16) GridBlock {
+  glm::vec3 low;
+  float voxelSize;
+  glm::ivec3 resolution;
+};
+/// Block Printed of common/bit_grid.glsl.
+struct alignas(16) PrintedBlock {
+  std::int32_t steps;
+  float offset;
+};
+/// Block BackProjection of common/back_projection.glsl.
+struct alignas(16) BackProjectionBlock {
+  float voxelDiagonal, tolerance, cap, leastCosine;
+  std::int32_t firstLight, lightsAtOnce;
+};
+
+constexpr float kLargestTolerance = 1000.0f;
+// Smallest cosine between a surface and the light: that of the map's areas, and the printed one.
+constexpr float kLeastCosine = 0.02f, kPrintedLeastCosine = 0.001f;
 
 constexpr int kBits = BinaryGrid::kStack;
 using Stack = std::array<std::uint32_t, 4>;
@@ -59,17 +81,13 @@ RayMethod::RayMethod(Pass* pass)
 shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits) const {
   const GridPlacement& grid = bits.grid;
   shader::BindingSet result{shader::SampledSlot{"bitStacks"}(bits.stacks, gpu::Sampling::nearest)};
-  // By name: every program that includes bit_grid.glsl has these blocks.
-  namespace code = shaders::near_field_voxels::probe;
-  result.add(shader::UniformSlot<code::Grid>{"Grid"}(
-      {.gridLow = grid.low, .voxelSize = grid.voxelSize, .resolution = grid.resolution}));
+  result.add(shader::UniformSlot<GridBlock>{"Grid"}({grid.low, grid.voxelSize, grid.resolution}));
   if (axis() != static_cast<int>(Method::printed)) return result;
   if (grid.resolution.z > kBits)
     throw Error(fmt::format(
         "'method printed' reads one texel of {} bits along z, and the grid of 'bits' is {} voxels deep; expected at most {}, or another method",
         kBits, grid.resolution.z, kBits));
-  result.add(
-      shader::UniformSlot<code::Printed>{"Printed"}({.printedSteps = steps_, .printedOffset = behind_}));
+  result.add(shader::UniformSlot<PrintedBlock>{"Printed"}({steps_, behind_}));
   const gpu::TextureRef& masks = frame.kept("bits between two", 0, [&] { return rayMasks(frame); });
   result.add(shader::SampledSlot{"rayMasks"}(masks, gpu::Sampling::nearest));
   return result;
@@ -90,4 +108,37 @@ std::int64_t RayMethod::turns(const BinaryGrid& bits) const {
   return 0;
 }
 
-}  // namespace lumivox::near_field_voxels
+BackProjection::BackProjection(Pass* pass)
+    : taps_(pass, "taps", 1, within(1, 4),
+            "texels of the map read for each hit: 1, or 4 with bilinear weights"),
+      tolerance_(
+          pass, "tolerance", 1.0f, within(0.0f, kLargestTolerance),
+          "factor on the largest distance between a hit and its texel's surface at which the texel counts; the largest value: no limit"),
+      cap_(pass, "cap", 4.0f, within(0.0f, 1000.0f),
+           "bound of this distance, in diagonals of a voxel (Listing 4.49); 0: no bound (Sec. 3.2.3)"),
+      front_(pass, "front", true, "surfaces that face away from the receiver contribute nothing") {}
+
+std::string BackProjection::check() const {
+  return taps_ == 1 || taps_ == 4 ? std::string()
+                                  : fmt::format("'taps' is {}; expected 1 or 4", static_cast<int>(taps_));
+}
+
+shader::BindingSet BackProjection::binding(float voxelSize, bool printed, int first, int count) const {
+  const float diagonal = std::sqrt(3.0f) * voxelSize;
+  return {shader::UniformSlot<BackProjectionBlock>{"BackProjection"}(
+      {diagonal, tolerance_ < kLargestTolerance ? static_cast<float>(tolerance_) : -1.0f,
+       cap_ > 0.0f ? cap_ * diagonal : -1.0f, printed ? kPrintedLeastCosine : kLeastCosine, first, count})};
+}
+
+void requireWhole(const ReflectiveShadowMap& map, const std::string& pass) {
+  const auto lights = map.lights->sizeBytes() / sizeof(LightSampleData),
+             views = map.views->sizeBytes() / sizeof(glm::mat4);
+  const auto layers = static_cast<std::uint64_t>(map.position->description().depth);
+  const auto wanted = static_cast<std::uint64_t>(map.layerCount);
+  if (lights < static_cast<std::uint64_t>(map.lightCount) || views < wanted || layers < wanted)
+    throw Error(fmt::format(
+        "{}: 'map' tells of {} lights in {} layers, and holds {} lights, {} views and {} layers; expected those of one reflective shadow map",
+        pass, map.lightCount, map.layerCount, lights, views, layers));
+}
+
+}  // namespace lumivox

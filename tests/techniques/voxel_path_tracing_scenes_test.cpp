@@ -1,0 +1,207 @@
+// Paths through bits on committed scenes: against the reference of the boxes, which knows the same bits, map
+// and averages and nothing else of them; and against the path-traced reference of the triangles.
+#include <set>
+
+#include "lumivox/reference/voxel_transport.h"
+#include "support/against_reference.h"
+#include "support/kept_table.h"
+#include "support/near_field_scene.h"
+#include "support/voxel_paths.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::near_field;
+
+namespace {
+
+/// What both transports know of a scene.
+struct Known {
+  Seen seen;
+  ReflectiveShadowMap map;
+  AttributeGrid attributes;
+  Known(const std::string& name, int resolution, int side) : seen(name, resolution, side) {
+    PassHarness lights(device(), techniques(), "reflective_shadow_maps", "render", seen.scene, seen.snapshot),
+        voxels(device(), techniques(), "voxelization", "conservative", seen.scene, seen.snapshot),
+        average(device(), techniques(), "voxelization", "average", seen.scene, seen.snapshot);
+    lights.run();
+    map = lights.output<ReflectiveShadowMap>("surfaces");
+    voxels.setParameter("resolution", resolution);
+    voxels.run();
+    average.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+    average.run();
+    attributes = average.output<AttributeGrid>("attributes");
+  }
+};
+
+std::vector<float> traced(const Known& known, int bounces, int samples) {
+  PassHarness trace(device(), techniques(), "voxel_path_tracing", "trace", known.seen.scene,
+                    known.seen.snapshot);
+  trace.setInput("gbuffer", known.seen.gbuffer);
+  trace.setInput("bits", known.seen.bits);
+  trace.setInput("map", known.map);
+  trace.setInput("attributes", known.attributes);
+  trace.setParameter("samples", samples);
+  trace.setParameter("bounces", bounces);
+  trace.run();
+  return trace.output<Image>("arriving").texture->downloadFloats(0);
+}
+
+double reachOfPlane(const glm::dvec3& normal) {
+  const glm::dvec3 sides = glm::abs(normal);
+  return sides.x + sides.y + sides.z + 1.0 / 16.0;
+}
+
+/// The same by the host.
+class Boxes {
+ public:
+  explicit Boxes(const Known& known)
+      : known_(known),
+        grid_(known.seen.bits.grid),
+        onHost_(known.map),
+        albedos_(known.attributes.albedo->downloadFloats(0)),
+        normals_(known.attributes.normal->downloadFloats(0)) {
+    for (const Cell& cell : cellsOf(known.seen.bits)) {
+      voxels_.push_back({cell[0], cell[1], cell[2]});
+      set_.insert(cell);
+    }
+  }
+  std::vector<BoxLight> light(int bounces, int samples) const {
+    BoxTransport transport;
+    transport.environment = known_.seen.scene.environment;
+    transport.samples = samples;
+    transport.bounces = bounces;
+    transport.radiance = [&](const BoxHit& hit) {
+      return onHost_.radianceAt(hit.middle(), -hit.direction, grid_.voxelSize);
+    };
+    transport.surface = [&](const BoxHit& hit) { return surfaceAt(hit); };
+    return transportThroughBoxes(VoxelBoxes(voxels_, grid_), starts(), transport);
+  }
+
+ private:
+  const Known& known_;
+  GridPlacement grid_;
+  MapOnHost onHost_;
+  std::vector<float> albedos_, normals_;
+  std::vector<glm::ivec3> voxels_;
+  std::set<Cell> set_;
+
+  bool isSet(const glm::dvec3& place) const {
+    const glm::ivec3 voxel(
+        glm::floor((place - glm::dvec3(grid_.low)) / static_cast<double>(grid_.voxelSize)));
+    return set_.count({voxel.x, voxel.y, voxel.z}) > 0;
+  }
+  BoxSurface surfaceAt(const BoxHit& hit) const {
+    const glm::dvec3 toViewer = -glm::normalize(hit.direction);
+    BoxSurface result;
+    glm::dvec3 normal = toViewer;
+    if (const auto lit = onHost_.surfaceAt(hit.middle(), toViewer, grid_.voxelSize)) {
+      normal = lit->normal, result.albedo = lit->albedo;
+    } else {
+      const auto texel = static_cast<std::size_t>(
+          (hit.voxel.z * grid_.resolution.y + hit.voxel.y) * grid_.resolution.x + hit.voxel.x);
+      const auto rgb = [&](const std::vector<float>& texels) {
+        return glm::dvec3(texels[4 * texel], texels[4 * texel + 1], texels[4 * texel + 2]);
+      };
+      result.albedo = rgb(albedos_);
+      if (rgb(normals_) != glm::dvec3(0.0)) normal = glm::normalize(rgb(normals_));
+    }
+    if (glm::dot(normal, toViewer) < 0.0) normal = -normal;
+    const double voxel = grid_.voxelSize;
+    result.start = {hit.middle() + voxel * reachOfPlane(normal) * normal, normal};
+    if (!isSet(result.start.place)) return result;
+    for (int i = 1; i <= 8; ++i) {
+      const glm::dvec3 further = result.start.place + 0.25 * i * voxel * normal;
+      if (isSet(further)) continue;
+      result.start.place = further;
+      break;
+    }
+    return result;
+  }
+  std::vector<BoxStart> starts() const {
+    const std::vector<float> positions = known_.seen.gbuffer.position->downloadFloats(0),
+                             normals = known_.seen.gbuffer.normal->downloadFloats(0),
+                             geometric = known_.seen.gbuffer.geometricNormal->downloadFloats(0);
+    std::vector<BoxStart> result(positions.size() / 4);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      if (positions[4 * i + 3] == 0.0f) continue;
+      const auto at = [&](const std::vector<float>& values) {
+        return glm::dvec3(values[4 * i], values[4 * i + 1], values[4 * i + 2]);
+      };
+      const glm::dvec3 outwards = at(geometric);
+      result[i] = {at(positions) + grid_.voxelSize * reachOfPlane(outwards) * outwards,
+                   glm::normalize(at(normals))};
+    }
+    return result;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("two and eight bounces of paths differ from the reference of the boxes by noise alone") {
+  constexpr int kSamples = 4096;
+  const Known known("cornell", 64, 16);
+  const Boxes boxes(known);
+  for (const int bounces : {2, 8}) {
+    const std::vector<float> arriving = traced(known, bounces, kSamples);
+    const std::vector<BoxLight> light = boxes.light(bounces, kSamples);
+    int compared = 0, within = 0;
+    double sum = 0.0, right = 0.0;
+    for (std::size_t i = 0; i < light.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double value = arriving[4 * i + static_cast<std::size_t>(c)];
+        sum += value, right += light[i].arriving[c];
+        ++compared;
+        within += std::abs(value - light[i].arriving[c]) <=
+                  3.0 * std::sqrt(2.0 * light[i].variance[c]) + 1e-5 * light[i].arriving[c] + 1e-9;
+      }
+    CAPTURE(bounces, 1.0 * within / compared, sum / right);
+    CHECK(within >= 0.99 * compared);
+    CHECK(sum / right == Approx(1.0).epsilon(0.003));
+  }
+}
+
+namespace {
+
+/// Indirect light of the pipeline without smoothing, so that what is left of the error is bias and noise.
+Against errorOf(const Scene& scene, int side, int samples, int bounces, const std::string& layer,
+                const std::string& output = "indirect_diffuse") {
+  ReferenceOptions options = quietly(1024, 1);
+  options.width = options.height = side;
+  options.useCache = true;
+  options.bounceLayers = {2, 8};
+  const LayeredImage reference = cachedReference(scene, options);
+  Pipeline text = pipeline("voxel_path_tracing");
+  const FrameResult frame = pictured(
+      scene, {side, side}, text,
+      {"resolution=128", "samples=" + std::to_string(samples), "bounces=" + std::to_string(bounces)});
+  return against(reference, frame.outputs.at(output), layer, 0.0f);
+}
+
+}  // namespace
+
+TEST_CASE("paths of eight bounces show all of the Cornell box's indirect light") {
+  const Against found = errorOf(committed("cornell"), 32, 128, 8, "indirect_diffuse");
+  CAPTURE(found.rmse, found.ratio);
+  CHECK(found.rmse < 0.15);
+  CHECK(found.ratio == Approx(1.0).epsilon(0.05));
+}
+
+// The numbers of the card; minutes.
+TEST_CASE("errors of paths by bounces", "[.]") {
+  KeptTable table("voxel_path_tracing.errors", {{"error", 3, 0.01}, {"ratio", 2, 0.01}});
+  constexpr int kSide = 64, kSamples = 512;
+  const auto row = [&](const char* name, const Scene& scene, int bounces, const char* layer,
+                       const char* output) {
+    const Against found = errorOf(scene, kSide, kSamples, bounces, layer, output);
+    table.row(name, {found.rmse, found.ratio});
+  };
+  const Scene cornell = committed("cornell"), glossy = committed("cornell_glossy"),
+              arcade = committed("arcade");
+  row("cornell, 1 bounce", cornell, 1, "one_bounce_diffuse", "indirect_diffuse");
+  row("cornell, 2 bounces", cornell, 2, "bounces_2_diffuse", "indirect_diffuse");
+  row("cornell, 8 bounces, of as many", cornell, 8, "bounces_8_diffuse", "indirect_diffuse");
+  row("cornell, 8 bounces, of all light", cornell, 8, "indirect_diffuse", "indirect_diffuse");
+  row("cornell_glossy, 8 bounces, diffuse, of all light", glossy, 8, "indirect_diffuse", "indirect_diffuse");
+  row("cornell_glossy, 8 bounces, glossy, of all light", glossy, 8, "indirect_glossy", "indirect_glossy");
+  row("arcade, 8 bounces, of all light", arcade, 8, "indirect_diffuse", "indirect_diffuse");
+}
