@@ -1,5 +1,5 @@
 # Files that `cmake --install build --prefix P` copies, after `ninja -C build sdk`: programs, libraries, headers, the CMake package, and
-# below share/lumivox what they read: shaders/common, scenes, templates, guides. Libraries are found relative to each other, and data
+# below share/lumivox what they read: shaders that techniques include, scenes, templates, guides. Libraries are found relative to each other, and data
 # relative to the program, so that P may lie anywhere and be moved.
 include(CMakePackageConfigHelpers)
 
@@ -12,8 +12,9 @@ install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT 
 set_target_properties(lumivox_view PROPERTIES INSTALL_RPATH $ORIGIN/../lib/lumivox)
 install(TARGETS lumivox_view RUNTIME DESTINATION bin)
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
-install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack ${CMAKE_BINARY_DIR}/lib/shaders/viewer.shaderpack
-  DESTINATION lib/lumivox/shaders)
+foreach(shaders toolkit device)
+  install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/${shaders}.shaderpack DESTINATION lib/lumivox/shaders)
+endforeach()
 install(DIRECTORY framework/include/lumivox laboratory/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${LUMIVOX_GENERATED_INCLUDE}/lumivox DESTINATION include)
 
@@ -24,7 +25,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConf
 install(FILES ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfigVersion.cmake
   cmake/LumivoxTechniques.cmake cmake/LumivoxTechnique.map DESTINATION ${package})
 
-install(DIRECTORY shaders/common DESTINATION ${data}/shaders)
+install(DIRECTORY shaders/common shaders/toolkit DESTINATION ${data}/shaders)
 install(DIRECTORY scenes templates examples DESTINATION ${data})
 # The guides link to each other and to the cards, as they do in the tree.
 install(DIRECTORY docs DESTINATION ${data})
@@ -64,7 +65,7 @@ install(CODE [[
 
 # Everything that is installed, and none of the tests: `ninja -C build sdk && cmake --install build`, or `cd build && cpack -G DEB`.
 get_property(techniques GLOBAL PROPERTY LUMIVOX_TECHNIQUES)
-add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_device shaders_viewer ${techniques})
+add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_toolkit shaders_device ${techniques})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lumivox)

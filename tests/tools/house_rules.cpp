@@ -279,7 +279,7 @@ Violations namedTechniques(const Sources& sources, const std::vector<std::string
 }
 
 /// A technique includes the framework, its own files and its generated shader interface; a shader includes
-/// its folder and common.
+/// its folder, common and toolkit.
 Violations dependentTechniques(const Sources& sources, const std::vector<std::string>& techniques) {
   Violations found;
   for (const SourceFile& source : sources) {
@@ -309,9 +309,8 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 
 constexpr const char* kVoxelizers = "voxelizers";  // scenes/pipelines/voxelizers: what makes voxels alone
 
-// Shaders of no technique: what techniques share, the framework's own, which time the device, and the
-// window's.
-constexpr std::array kOtherShaders{"common", "device", "viewer"};
+// Shaders of no technique: what techniques share, the toolkit's, and those that time the device.
+constexpr std::array kOtherShaders{"common", "device", "toolkit"};
 
 /// One name everywhere. `files` are all paths of the project; pipelines come with their text.
 Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,

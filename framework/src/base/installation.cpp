@@ -1,5 +1,9 @@
 #include "lumivox/base/installation.h"
 
+#include <dlfcn.h>
+
+#include "lumivox/base/error.h"
+
 namespace lumivox {
 
 namespace fs = std::filesystem;
@@ -24,6 +28,17 @@ std::optional<fs::path> programData(const fs::path& folder, const fs::path& prog
   for (fs::path above = program.parent_path(); above.has_relative_path(); above = above.parent_path())
     if (fs::is_directory(above / folder, ignored)) return above / folder;
   return std::nullopt;
+}
+
+fs::path libraryFolder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&libraryFolder), &info) == 0 || info.dli_fname == nullptr)
+    throw Error("the framework's library cannot be found, and with it what lies beside it");
+  return fs::absolute(info.dli_fname).parent_path();
+}
+
+fs::path frameworkPack(const std::string& name) {
+  return libraryFolder() / "shaders" / (name + ".shaderpack");
 }
 
 }  // namespace lumivox

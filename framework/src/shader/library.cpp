@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
 #include "shader/arithmetic.h"
 #include "shader/counting.h"
 #include "shader/glsl.h"
@@ -164,9 +165,13 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, VariantKey v
   if (const auto known = state_->programs.find(request); known != state_->programs.end())
     return known->second;
 
-  const auto pack = state_->packs.find(name.technique);
-  if (pack == state_->packs.end())
-    throw Error(fmt::format("the shaders of technique {} are not loaded", name.technique));
+  auto pack = state_->packs.find(name.technique);
+  if (pack == state_->packs.end()) {
+    const std::filesystem::path own = frameworkPack(name.technique);
+    if (!std::filesystem::exists(own))
+      throw Error(fmt::format("the shaders of technique {} are not loaded", name.technique));
+    pack = state_->packs.emplace(name.technique, readShaderPack(own)).first;
+  }
   const PackedProgram& packed = pack->second.program(name.program);
   const std::vector<int> values(variant.begin(), variant.end());
   const PackedVariant* found = packed.find(variant);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace lumivox {
 
@@ -16,5 +17,12 @@ std::optional<std::filesystem::path> programData(const std::filesystem::path& fo
 /// The same for a program that lies elsewhere: for tests.
 std::optional<std::filesystem::path> programData(const std::filesystem::path& folder,
                                                  const std::filesystem::path& program);
+
+/// The folder that the framework's library was loaded from: its techniques and packs of shaders lie below.
+/// Error where that cannot be told.
+std::filesystem::path libraryFolder();
+
+/// A pack of the framework's own shaders, such as "toolkit", whether there is one of this name or not.
+std::filesystem::path frameworkPack(const std::string& name);
 
 }  // namespace lumivox
