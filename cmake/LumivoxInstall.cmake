@@ -12,7 +12,7 @@ install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT 
 set_target_properties(lumivox_view PROPERTIES INSTALL_RPATH $ORIGIN/../lib/lumivox)
 install(TARGETS lumivox_view RUNTIME DESTINATION bin)
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
-foreach(shaders toolkit device viewer)
+foreach(shaders toolkit device)
   install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/${shaders}.shaderpack DESTINATION lib/lumivox/shaders)
 endforeach()
 install(DIRECTORY framework/include/lumivox laboratory/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
@@ -65,7 +65,7 @@ install(CODE [[
 
 # Everything that is installed, and none of the tests: `ninja -C build sdk && cmake --install build`, or `cd build && cpack -G DEB`.
 get_property(techniques GLOBAL PROPERTY LUMIVOX_TECHNIQUES)
-add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_toolkit shaders_device shaders_viewer ${techniques})
+add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_toolkit shaders_device ${techniques})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lumivox)

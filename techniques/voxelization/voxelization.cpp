@@ -15,5 +15,4 @@ LUMIVOX_TECHNIQUE(registry) {
   addReproject(registry);
   addAtlas(registry);
   addSolid(registry);
-  addView(registry);
 }

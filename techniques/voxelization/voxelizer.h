@@ -111,6 +111,5 @@ void addPoints(TechniqueRegistry& registry);
 void addReproject(TechniqueRegistry& registry);
 void addAtlas(TechniqueRegistry& registry);
 void addSolid(TechniqueRegistry& registry);
-void addView(TechniqueRegistry& registry);
 
 }  // namespace lumivox::voxelization

@@ -154,9 +154,9 @@ TEST_CASE(
               "  pass gbuffer direct_lighting.gbuffer { }\n"
               "  pass direct direct_lighting.shade { gbuffer gbuffer }\n"
               "  pass voxels voxelization.conservative { resolution 8 }\n"
-              "  pass view voxelization.view { fragments voxels.fragments }\n"
+              "  pass look voxel_cone_tracing.look { voxels voxels.fragments }\n"
               "  output direct direct.radiance\n"
-              "  output cubes view.image\n"
+              "  output cubes look.radiance\n"
               "}\n");
   const auto render = [&](const char* options, const char* name) {
     ran("-q render", place.scene(), place / "cubes.pipeline", options, "-o", place / name);

@@ -310,8 +310,8 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 constexpr const char* kVoxelizers = "voxelizers";  // scenes/pipelines/voxelizers: what makes voxels alone
 
 // Shaders of no technique: what techniques share, the framework's own, which serve all techniques or time the
-// device, and the window's.
-constexpr std::array kOtherShaders{"common", "toolkit", "device", "viewer"};
+// device.
+constexpr std::array kOtherShaders{"common", "toolkit", "device"};
 
 /// One name everywhere. `files` are all paths of the project; pipelines come with their text.
 Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,

@@ -15,7 +15,6 @@
 #include "tools/vdbexport_support.h"
 #include "vdbexport/difference.h"
 #include "vdbexport/export.h"
-#include "vdbexport/preview.h"
 #include "vdbexport/vdb_file.h"
 
 using namespace lumivox;
@@ -388,35 +387,6 @@ TEST_CASE("a range of frames becomes numbered files that say which frame and tim
   CHECK(metaText(*grids.at("grid.mips.radiance"), "lumivox.frame") == "3");
   CHECK(metaText(*grids.at("grid.mips.radiance"), "lumivox.time") == "0.3");
   CHECK(metaText(*readByOpenVdb(place.file("one.vdb")).at("grid.mips.opacity"), "lumivox.frame") == "7");
-}
-
-TEST_CASE("a preview shows the largest value along each axis, of single voxels and of tiles") {
-  auto grid = gridWithVoxels<openvdb::Vec3SGrid>(0.1, openvdb::Vec3d(0.0));
-  grid->tree().setValue({-2, 5, 7}, openvdb::Vec3f(1, -4, 0));
-  grid->tree().setValue({-2, 5, 8}, openvdb::Vec3f(3, 2, 0));
-  grid->tree().setValue({1, 6, 7}, openvdb::Vec3f(0, 0, 9));
-  const std::vector<ImageBuffer> views = vdb::projections(*grid);
-  REQUIRE(views.size() == 3);
-  // 4 x 2 x 2 voxels. Along z, x to the right and y up: both voxels of the column, component by component.
-  REQUIRE((views[2].width() == 4 && views[2].height() == 2));
-  CHECK(views[2].at(0, 1, 0) == 3.0f);
-  CHECK(views[2].at(0, 1, 1) == 4.0f);
-  CHECK(views[2].at(3, 0, 2) == 9.0f);
-  CHECK(views[2].at(1, 1, 0) == 0.0f);
-  // Along x, z to the left; along y, z downwards.
-  CHECK(views[0].at(1, 1, 1) == 4.0f);
-  CHECK(views[0].at(0, 1, 0) == 3.0f);
-  CHECK(views[0].at(1, 0, 2) == 9.0f);
-  CHECK(views[1].at(0, 0, 1) == 4.0f);
-  CHECK(views[1].at(0, 1, 0) == 3.0f);
-  CHECK(views[1].at(3, 0, 2) == 9.0f);
-
-  auto tiles = gridWithVoxels<openvdb::BoolGrid>(0.1, openvdb::Vec3d(0.0));
-  tiles->fill(openvdb::CoordBBox({0, 0, 0}, {15, 7, 7}), true);
-  tiles->pruneGrid();
-  for (const ImageBuffer& view : vdb::projections(*tiles))
-    for (const float value : view.values()) CHECK(value == 1.0f);
-  CHECK_THROWS_AS(vdb::projections(*gridWithVoxels<openvdb::DoubleGrid>(1.0, openvdb::Vec3d(0.0))), Error);
 }
 
 TEST_CASE("vdbexport writes a preview beside the grids, with the exposure that images have") {

@@ -121,8 +121,7 @@ void refuseEmpty(const std::vector<openvdb::GridBase::ConstPtr>& grids, bool seq
 }
 
 std::vector<openvdb::GridBase::ConstPtr> convert(Session& session, const GlobalOptions& global, double time,
-                                                 int frame) {
-  std::vector<NamedField> fields = session.exporter.render(time, frame);
+                                                 std::vector<NamedField>& fields) {
   const auto provenance = command::provenance(global, session.scene, session.pipeline, session.renderOptions,
                                               *session.device, time);
   std::vector<openvdb::GridBase::ConstPtr> grids;
@@ -155,14 +154,15 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
   Session session(options, global, levels);
   outputs.requireUnread();
   for (int frame = first + 1; frame < last; ++frame) command::Outputs::requireUnread("-o", fileOf(frame));
-  Preview preview;
+  Preview preview(*session.device);
   for (int frame = first; frame <= last; ++frame) {
     const double time = options.run.time + frame / options.framesPerSecond;
-    const auto grids = convert(session, global, time, frame);
+    std::vector<NamedField> fields = session.exporter.render(time, frame);
+    const auto grids = convert(session, global, time, fields);
     const fs::path file = fileOf(frame);
     refuseEmpty(grids, sequence, file);
     writeVdb(file, grids);
-    if (!options.preview.empty()) preview.add(grids, sequence ? fmt::format("frame {}", frame) : "");
+    if (!options.preview.empty()) preview.add(fields, sequence ? fmt::format("frame {}", frame) : "");
     std::vector<std::string> names;
     for (const auto& grid : grids) names.push_back(grid->getName());
     logInformation("{}: {} ({})", file.string(), fmt::join(names, ", "), formatBytes(fs::file_size(file)));

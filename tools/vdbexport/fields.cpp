@@ -185,6 +185,7 @@ class FieldMaker {
  public:
   Field make(const PortContents::Field& from) {
     Field field;
+    field.onDevice = from;
     field.name = from.name;
     field.level = from.level;
     field.quantity = from.what->quantity;

@@ -27,8 +27,9 @@ struct Field {
   std::uint64_t deviceBytes = 0;  ///< of the level's resources on the device; fields may share them
   openvdb::GridClass gridClass = openvdb::GRID_UNKNOWN;
   openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
-  openvdb::MetaMap constants;  ///< what else is needed to read the values: a medium's extinction
-  bool mediumDensity = false;  ///< viewers expect the name "density" for it
+  openvdb::MetaMap constants;      ///< what else is needed to read the values: a medium's extinction
+  bool mediumDensity = false;      ///< viewers expect the name "density" for it
+  PortContents::Field onDevice{};  ///< as the kind tells it
   /// Downloads and converts; no transform or metadata yet. Call it once.
   std::function<openvdb::GridBase::Ptr()> values;
 };

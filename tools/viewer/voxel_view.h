@@ -2,13 +2,13 @@
 // spherical harmonics. They are drawn by the device that made them.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "lumivox/base/image.h"
 #include "lumivox/pipeline/port.h"
 #include "lumivox/scene/scene.h"
+#include "lumivox/shader/library.h"
 
 namespace lumivox::viewer {
 
@@ -28,9 +28,7 @@ std::vector<std::string> drawnFields(const PortKind& kind);
 /// Draws on the device whose thread this is.
 class VoxelView {
  public:
-  /// Error when the shaders are not beside the program.
-  explicit VoxelView(gpu::Device& device);
-  ~VoxelView();
+  explicit VoxelView(gpu::Device& device) : shaders_(device) {}
 
   /// A field at a level, by the name in the kind or in the value. Voxels whose values are all at most `above`
   /// from 0 are left out, and so is the one around the eye. Error for a field or level that is not there.
@@ -38,8 +36,7 @@ class VoxelView {
                     const CameraView& camera);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  shader::ShaderLibrary shaders_;
 };
 
 }  // namespace lumivox::viewer

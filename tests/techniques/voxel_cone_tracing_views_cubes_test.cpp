@@ -1,4 +1,4 @@
-// The image of voxels as cubes, against every cube met by every line of sight.
+// Looking at the voxels of a list as cubes, against every cube met by every line of sight.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ using namespace lumivox::test;
 namespace {
 
 constexpr double kNoVoxel = 0.02;
-constexpr double kBrightness[3] = {0.35, 0.75, 0.52};  ///< of sides across x, y and z
+constexpr double kBrightness[3] = {0.8, 1.0, 0.65};  ///< of sides across x, y and z
 
 struct Hit {
   double at = std::numeric_limits<double>::infinity();  ///< voxels from the eye
@@ -44,6 +44,17 @@ std::optional<Hit> entry(const glm::dvec3& eye, const glm::dvec3& direction, con
   return hit;
 }
 
+ImageBuffer cubes(const Scene& scene, const SceneSnapshot& snapshot, const VoxelFragments& list,
+                  double cut = 0.0) {
+  PassHarness look(device(), techniques(), "voxel_cone_tracing", "look", scene, snapshot);
+  look.setParameter("faces", "edges");
+  look.setParameter("background", kNoVoxel);
+  look.setParameter("cut", cut);
+  look.setInput("voxels", list);
+  look.run();
+  return imageOf(*look.output<Image>("radiance").texture);
+}
+
 }  // namespace
 
 TEST_CASE("every line of sight shows the nearest cube, with darker edges where cubes are wide enough") {
@@ -65,10 +76,7 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
     SceneBuilder builder;
     builder.look(eye, {0.05f, -0.1f, 0.02f}, {0, 1, 0}, 0.9, 96, 96);
     const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-    PassHarness view(device(), techniques(), "voxelization", "view", builder.scene, snapshot);
-    view.setInput("fragments", listOver(cells, fragments));
-    view.run();
-    const ImageBuffer image = imageOf(*view.output<Image>("image").texture);
+    const ImageBuffer image = cubes(builder.scene, snapshot, listOver(cells, fragments));
     const CameraView& camera = snapshot.camera;
     const glm::dvec3 eyeGrid = (glm::dvec3(camera.eye) - glm::dvec3(cells.low)) / 0.2;
     const double pixelWidth = 2.0 * camera.tanHalfFov / camera.height;
@@ -109,5 +117,32 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
     // From afar pixels are wider than lines would be.
     CHECK((lines > 100) == (glm::length(eye) < 5.0f));
     CHECK(empty > 100);
+  }
+}
+
+TEST_CASE("what is nearer than the cut is not seen, and lays open what is cut") {
+  // A plate two voxels thick across the view axis, and a wall behind it on the left.
+  const GridPlacement cells{glm::vec3(-1.0f), 0.5f, glm::ivec3(4)};
+  std::vector<FragmentData> fragments;
+  const auto add = [&](int x, int y, int z) {
+    fragments.push_back(squareAt((glm::dvec3(x, y, z) + 0.5) / 2.0, {0, 0, 1}));
+  };
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y) {
+      add(x, y, 5), add(x, y, 6);
+      if (x < 4) add(x, y, 0);
+    }
+  SceneBuilder builder;
+  builder.look({0, 0, 11}, {0, 0, 0}, {0, 1, 0}, 0.1, 32, 32);
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  const VoxelFragments list = listOver(cells, fragments);
+  // The plate is at z 0.25..0.75, 10.25 to 10.75 m before the camera, and the wall's face at z -0.75.
+  const auto grey = [&](double cut, int x) { return cubes(builder.scene, snapshot, list, cut).at(x, 13, 1); };
+  for (const int x : {5, 26}) {
+    CHECK(grey(0.0, x) == Approx(kBrightness[2]));
+    CHECK(grey(10.2, x) == Approx(kBrightness[2]));
+    CHECK(grey(10.3, x) == Approx(0.5));  // within
+    CHECK(grey(10.7, x) == Approx(0.5));
+    CHECK(grey(10.8, x) == Approx(x < 16 ? kBrightness[2] : kNoVoxel));
   }
 }
