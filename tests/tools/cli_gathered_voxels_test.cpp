@@ -49,17 +49,17 @@ TEST_CASE("a sweep over the density of points keeps recall, precision and holes,
     CHECK(voxels.at("output") == "voxels.fragments");
     CHECK(voxels.at("kind") == "VoxelFragments");
     CHECK(voxels.at("resolution").dump() == "[16,16,16]");
-    byDensity[std::stod(run.at("identity").at("parameters").at("density").get<std::string>())] = voxels;
+    byDensity[std::stod(run.at("parameters").at("density").get<std::string>())] = voxels;
   }
   REQUIRE(byDensity.size() == 4);  // the default, 8, beside the sweep
   double recall = 0.0, holes = 1.0;
   for (const auto& [density, voxels] : byDensity) {
     INFO(density << ": " << voxels.dump());
     CHECK(voxels.at("recall").get<double>() > recall);
-    CHECK(voxels.at("axis_holes").get<double>() <= holes);
+    CHECK(voxels.at("axis_share").get<double>() <= holes);
     CHECK(voxels.at("precision").get<double>() > 0.99);
     recall = voxels.at("recall").get<double>();
-    holes = voxels.at("axis_holes").get<double>();
+    holes = voxels.at("axis_share").get<double>();
   }
 
   const CommandResult exported = ran("results export", Raw{store}, "--format csv");
@@ -78,7 +78,7 @@ TEST_CASE("a sweep over the density of points keeps recall, precision and holes,
   CHECK(exported.output.find(fmt::format(
             ",voxels.fragments,,{},", byDensity.at(0.25).at("recall").get<double>())) != std::string::npos);
   const Json json = Json::parse(typed("results export", Raw{store}, "--format json").output);
-  CHECK(json.dump().find("\"axis_holes\"") != std::string::npos);
+  CHECK(json.dump().find("\"axis_share\"") != std::string::npos);
 }
 
 TEST_CASE(

@@ -102,7 +102,7 @@ TEST_CASE("the memory of a point does not count the points that are timed beside
   const Json pair = Json::parse(both.run().output)["runs"], one = Json::parse(alone.run().output)["runs"];
   const auto bytesOf = [](const Json& runs) {
     for (const Json& run : runs)
-      if (run["identity"]["parameters"]["area_samples"] == "8") return run["peak_bytes"].get<std::uint64_t>();
+      if (run["parameters"]["area_samples"] == "8") return run["peak_bytes"].get<std::uint64_t>();
     return std::uint64_t{0};
   };
   CHECK(bytesOf(pair) == bytesOf(one));

@@ -94,10 +94,10 @@ TEST_CASE("one text measures scenes by pipelines by parameters by seeds, and the
   CHECK(measured["measured"] == 12);
   std::set<std::string> points;
   for (const Json& run : measured["runs"]) {
-    CHECK(run["identity"]["seeds"] == 1);
+    CHECK(run["seeds"] == 1);
     points.insert(run["scene"].get<std::string>() + run["pipeline"].get<std::string>() +
-                  run["identity"]["parameters"].dump() + run["identity"]["seed"].dump());
-    CHECK((run["identity"]["seed"] == 3 || run["identity"]["seed"] == 5));
+                  run["parameters"].dump() + run["seed"].dump());
+    CHECK((run["seed"] == 3 || run["seed"] == 5));
   }
   CHECK(points.size() == 12);
   CHECK(Json::parse(measure(store).output)["measured"] == 0);

@@ -58,9 +58,9 @@ TEST_CASE(
   REQUIRE(table.size() == 1 + errors);
   const auto& first = points.at(0).at("errors").at(0);
   CHECK(std::stod(table.at(1).at(5).get<std::string>()) ==
-        Approx(first.at("flip_hdr").get<double>()).epsilon(0.06));
+        Approx(first.at("metrics").at("flip").at("value").get<double>()).epsilon(0.06));
   CHECK(std::stod(table.at(1).at(6).get<std::string>()) ==
-        Approx(first.at("rmse").at("value").get<double>()).epsilon(0.06));
+        Approx(first.at("metrics").at("rmse").at("value").get<double>()).epsilon(0.06));
   // Errors against time, and the voxelizers; against recall nothing, since all voxels are right. Sliders and
   // choices between images; the choices of the fronts; boxes and choices of tables.
   CHECK(page.at("charts").size() == 2);

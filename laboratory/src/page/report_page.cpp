@@ -37,9 +37,7 @@ Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned
 
 Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
   Json json = toJson(scene);
-  json["points"] = Json::array();
-  for (const PointRecord& point : scene.points)
-    json["points"].push_back(toJson(point.point, point.isDefault));
+  json["points"] = runsJson(runsOf(record, scene));
   const std::vector<const ReportPoint*> points = pointsOf(scene);
   json["slopes"] = toJson(slopesOf(points));
   json["pruning"] = Json::array();
@@ -157,8 +155,10 @@ void writeReport(const ReportFiles& files, const ReportRecord& record, ReportDet
                           true,
                           {page::assets::kComparisonJs, page::assets::kImagesJs, page::assets::kVoxelsJs,
                            page::assets::kStressJs, page::assets::kReportJs}};
-  const std::string json = textOf(document.data, 1) + "\n", csv = runsCsv(runsOf(record)),
-                    html = page::html(document);
+  std::vector<StoredRun> runs;
+  for (const SceneRecord& scene : record.scenes)
+    for (StoredRun& run : runsOf(record, scene)) runs.push_back(std::move(run));
+  const std::string json = textOf(document.data, 1) + "\n", csv = runsCsv(runs), html = page::html(document);
   writeFilesAtomically(std::vector<NewFile>{{files.json, json}, {files.csv, csv}, {files.page, html}});
 }
 

@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/results/json.h"
 
 namespace lumivox::results {
 namespace {
@@ -32,12 +33,12 @@ void Database::fail() const {
                           handle_ ? sqlite3_errmsg(handle_.get()) : "not enough memory to open it"));
 }
 
-void Database::execute(const char* sql) const {
-  if (sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+void Database::execute(const std::string& sql) const {
+  if (sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
 }
 
 std::int64_t Database::pragma(const char* name) const {
-  Statement statement(*this, fmt::format("PRAGMA {}", name).c_str());
+  Statement statement(*this, fmt::format("PRAGMA {}", name));
   return statement.step() ? statement.integer(0) : 0;
 }
 
@@ -47,9 +48,10 @@ bool Database::isMoved() const {
   return moved != 0;
 }
 
-Statement::Statement(const Database& database, const char* sql) : database_(database) {
+Statement::Statement(const Database& database, const std::string& sql) : database_(database) {
   sqlite3_stmt* statement = nullptr;
-  if (sqlite3_prepare_v2(database.handle(), sql, -1, &statement, nullptr) != SQLITE_OK) database.fail();
+  if (sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
+    database.fail();
   statement_.reset(statement);
 }
 
@@ -66,10 +68,9 @@ void Statement::run() {
   reset();
 }
 
-std::optional<int> Statement::columnNamed(const std::string& name) const {
-  for (int column = 0; column < sqlite3_column_count(statement_.get()); ++column)
-    if (name == sqlite3_column_name(statement_.get(), column)) return column;
-  return std::nullopt;
+void Statement::fail(const std::string& why) const {
+  throw Error(fmt::format("{}: '{}' gave what is no record of a results store: {}", database_.file().string(),
+                          sqlite3_sql(statement_.get()), why));
 }
 
 double Statement::number(int column) const {
@@ -96,6 +97,28 @@ std::string Statement::bytes(int column) const {
   return bytes == nullptr
              ? std::string()
              : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+nlohmann::ordered_json Statement::json(int column, bool isText) const {
+  switch (sqlite3_column_type(statement_.get(), column)) {
+    case SQLITE_NULL:
+      return nullptr;
+    case SQLITE_INTEGER:
+      return integer(column);
+    case SQLITE_FLOAT:
+      return number(column);
+    default:
+      return isText ? nlohmann::ordered_json(text(column)) : nlohmann::ordered_json::parse(text(column));
+  }
+}
+
+void Statement::bindJson(int index, const nlohmann::ordered_json& json) {
+  if (json.is_number_float() || json.is_null())
+    bindOne(index, json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>());
+  else if (json.is_number() || json.is_boolean())
+    bindInteger(index, json.is_boolean() ? json.get<bool>() : json.get<std::int64_t>());
+  else
+    bindOne(index, json.is_string() ? json.get<std::string>() : textOf(json, -1));
 }
 
 void Statement::bindOne(int index, const Blob& blob) {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
 
@@ -22,7 +22,7 @@ struct Blob {
 /// A prepared statement. Bind all values in order, then step through the rows.
 class Statement {
  public:
-  Statement(const Database& database, const char* sql);
+  Statement(const Database& database, const std::string& sql);
   template <class... Values>
   Statement& bind(const Values&... values) {
     sqlite3_reset(statement_.get());
@@ -39,22 +39,28 @@ class Statement {
     run();
   }
 
-  /// None: the result has no column of this name.
-  std::optional<int> columnNamed(const std::string& name) const;
   std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
   /// NaN has no place in SQLite and is stored as NULL.
   double number(int column) const;
   std::string text(int column) const;
   std::string bytes(int column) const;
+  /// A number, null or a text: itself, or the JSON in it.
+  nlohmann::ordered_json json(int column, bool isText) const;
+  /// Error for a value that is not what it should be.
+  [[noreturn]] void fail(const std::string& why) const;
 
- private:
+  /// One value, from 1 on.
   void bindOne(int index, const Blob& blob);
+  /// Lists and objects as their text.
+  void bindJson(int index, const nlohmann::ordered_json& json);
   void bindOne(int index, const std::string& text);
   void bindOne(int index, const char* text) { bindOne(index, std::string(text)); }
   void bindOne(int index, double number);
   template <class T>
   requires std::is_integral_v<T>
   void bindOne(int index, T value) { bindInteger(index, static_cast<std::int64_t>(value)); }
+
+ private:
   void bindInteger(int index, std::int64_t value);
 
   struct Finalize {
@@ -67,7 +73,7 @@ class Statement {
 class Database {
  public:
   Database(const std::filesystem::path& file, bool write);
-  void execute(const char* sql) const;
+  void execute(const std::string& sql) const;
   std::int64_t pragma(const char* name) const;  ///< an integer pragma
   std::int64_t lastRow() const { return sqlite3_last_insert_rowid(handle_.get()); }
   std::size_t changes() const { return static_cast<std::size_t>(sqlite3_changes(handle_.get())); }

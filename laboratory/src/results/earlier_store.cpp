@@ -2,207 +2,207 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdlib>
+#include <set>
 
 #include "lumivox/base/error.h"
-#include "results/fields.h"
+#include "results/record_rows.h"
 #include "results/store_schema.h"
 
 namespace lumivox::results {
 namespace {
 
-/// The names of schema 8 for a store of an earlier one: views of this connection, before the tables.
-struct NamesOfOlder {
-  std::int64_t until;  ///< the last schema that needs it
-  std::int64_t since;  ///< the first that has the table
-  const char* view;
-};
-constexpr NamesOfOlder kNamesOfOlder[] = {
-    {4, 1, "runs AS SELECT *, truth_samples AS reference_samples, 1 AS complete FROM main.runs"},
-    {5, 5, "runs AS SELECT *, 1 AS complete FROM main.runs"},
-    {4, 1, "errors AS SELECT *, truth AS reference FROM main.errors"},
-    {4, 1,
-     "metrics AS SELECT run, position, CASE name WHEN 'non_finite_truth' THEN 'non_finite_reference' WHEN "
-     "'non_finite_picture' THEN 'non_finite_image' ELSE name END AS name, value, uncertainty, of_nothing FROM main.metrics"},
-    {4, 2, "stress_cells AS SELECT *, picture AS image FROM main.stress_cells"},
-    {4, 2, "peak_rates AS SELECT * FROM main.ceilings"},
-    {4, 4, "images AS SELECT *, truth AS reference FROM main.pictures"},
-};
+using Expressions = std::map<std::string, std::string>;
 
-/// The fields of a record that the row has a column for.
+constexpr std::int64_t kLastTables = 8;  // the last schema with a table for all that a run has a list of
+constexpr std::int64_t kOldNames = 4;    // the last schema with truth, picture and ceiling
+
+/// A JSON object with the fields of a record, from columns.
 template <class T>
-void readRow(const Statement& row, T& record) {
-  fields(record, [&]<class M>(const Field& field, M&& member) {
+std::string objectOf(const Expressions& expressions) {
+  std::string sql;
+  T record;
+  fields(record, [&]<class M>(const Field& field, M&&) {
     using Member = std::remove_cvref_t<M>;
-    const auto at = [&](const std::string& column) { return row.columnNamed(column); };
-    if constexpr (std::same_as<Member, RunIdentity> || std::same_as<Member, RayHoles>) {
-      readRow(row, member);
-    } else if constexpr (std::same_as<Member, glm::ivec3>) {
-      for (int axis = 0; axis < 3; ++axis)
-        member[axis] = static_cast<int>(row.integer(*at(axis == 0   ? "width"
-                                                        : axis == 1 ? "height"
-                                                                    : "depth")));
-    } else if (const auto column = at(field.column)) {
-      if constexpr (std::same_as<Member, std::string>) member = row.text(*column);
-      if constexpr (std::same_as<Member, double>) member = row.number(*column);
-      if constexpr (std::integral<Member>) member = static_cast<Member>(row.integer(*column));
-      if constexpr (std::same_as<Member, Against<bool>>) member.bias = row.text(*column) == "bias";
-      if constexpr (std::same_as<Member, StressOutcome>)
-        member = stressOutcomeNamed(row.text(*column)).value_or(StressOutcome::broken);
-    }
+    if (kIsDerived<Member> || std::same_as<Member, Metrics<T>>) return;
+    const auto found = expressions.find(field.name);
+    sql += fmt::format("{}'{}', {}", sql.empty() ? "" : ", ", field.name,
+                       found == expressions.end() ? field.name : found->second);
   });
+  return "json_object(" + sql + ")";
 }
 
-template <class Work>
-void eachRow(const Database& database, const std::string& sql, std::int64_t id, Work work) {
-  Statement row(database, sql.c_str());
-  for (row.bind(id); row.step();) work(row);
+/// A subquery of the rows of a run.
+std::string ofRun(const std::string& value, const std::string& table, const std::string& where = "1") {
+  return fmt::format("(SELECT {} FROM {} WHERE run = r.id AND {})", value, table, where);
+}
+
+std::string listOfRun(const std::string& value, const std::string& columns, const std::string& table) {
+  return fmt::format(
+      "(SELECT json_group_array({}) FROM (SELECT {} FROM {} WHERE run = r.id ORDER BY position))", value,
+      columns, table);
+}
+
+/// Of each time of whole frames a column for each number; `expression` of the frame and the number.
+template <class Expression>
+void addTimes(Expressions& all, const Expression& expression) {
+  TimingStatistics time;
+  for (const std::string what : {"frame", "next_frame", "still_frame", "moved_frame"})
+    fields(time, [&]<class M>(const Field& part, M&) {
+      all[fmt::format("{}_ms_{}", what, part.name)] =
+          expression(what, std::string(part.name) + (std::floating_point<M> ? "_ms" : ""));
+    });
+}
+
+Expressions runsOfTables(std::int64_t schema) {
+  const auto hash = [](const char* kind) {
+    return ofRun("hash", "provenance", fmt::format("kind = '{}'", kind));
+  };
+  const auto named = [](const char* kind) {
+    return fmt::format("coalesce({}, '')", ofRun("name", "provenance", fmt::format("kind = '{}'", kind)));
+  };
+  const auto passTime = [](const char* what) {
+    return fmt::format(
+        "json((SELECT json_object('median', median_ms, 'lower_quartile', lower_quartile_ms, 'upper_quartile', "
+        "upper_quartile_ms, 'smallest', smallest_ms, 'largest', largest_ms, 'repeats', repeats) FROM timings "
+        "WHERE run = r.id AND what = '{}' AND pass = name))",
+        what);
+  };
+  const std::string work =
+      schema < 3 ? "NULL"
+                 : "json(" + ofRun("json_group_object(w.name, amount)", "work w", "pass = p.name") + ")";
+  Expressions all{
+      {"scene_hash", hash("scene")},
+      {"pipeline_hash", hash("pipeline")},
+      {"framework", hash("framework")},
+      {"techniques", ofRun("json_group_object(name, hash)", "provenance", "kind = 'technique'")},
+      {"kept", ofRun("json_group_array(name)", "provenance", "kind = 'kept'")},
+      {"flicker_pairs", "CAST(" + named("flicker") + " AS INTEGER)"},
+      {"display", named("display")},
+      {"not_counted", named("not_counted")},
+      {"parameters", ofRun("json_group_object(name, value)", "parameters")},
+      {"peak_bytes", ofRun("bytes", "resources", "what = 'peak'")},
+      {"health_findings", listOfRun("finding", "finding", "health")},
+      {"notes", schema < 4 ? "'[]'" : listOfRun("note", "note", "notes")},
+      {"passes",
+       fmt::format(
+           "(SELECT json_group_array(json_object('name', name, 'device_ms', {}, 'host_ms', {}, 'bytes', {}, 'work', {})) FROM (SELECT name "
+           "FROM passes WHERE run = r.id ORDER BY position) p)",
+           passTime("pass_device"), passTime("pass_host"),
+           ofRun("bytes", "resources", "what = 'pass' AND pass = name"), work)}};
+  Expressions errors;
+  if (schema <= kOldNames) {
+    all["reference_samples"] = "truth_samples";
+    errors["reference"] = "truth";
+  }
+  if (schema < 4) errors["per_seed"] = "0";
+  if (schema < 6) all["complete"] = "1";
+  all["errors"] = listOfRun(objectOf<ComponentError>(errors), "*", "errors");
+  all["voxels"] = "NULL";
+  if (schema >= 7)
+    all["voxels"] =
+        ofRun(objectOf<GatheredVoxels>({{"resolution", "json_array(width, height, depth)"}}), "voxels");
+  addTimes(all, [](const std::string& what, const std::string& number) {
+    return ofRun(number, "timings", fmt::format("what = '{}'", what));
+  });
+  return all;
+}
+
+/// Of the schema that kept a run as JSON.
+Expressions runsOfRecords() {
+  const auto at = [](const std::string& path) { return fmt::format("json_extract(record, '$.{}')", path); };
+  std::string passes = at("passes");
+  for (const char* name : {"median", "lower_quartile", "upper_quartile", "smallest", "largest"})
+    passes = fmt::format("replace({}, '\"{}_ms\":', '\"{}\":')", passes, name, name);
+  for (const char* name : {"device", "host"})
+    passes = fmt::format("replace({}, '\"{}\":', '\"{}_ms\":')", passes, name, name);
+  Expressions all{{"techniques", at("identity.techniques")},
+                  {"parameters", at("identity.parameters")},
+                  {"kept", at("identity.kept")},
+                  {"seed", "record -> '$.identity.seed'"},  // as text: it may exceed 2^63
+                  {"health_findings", at("health")},
+                  {"notes", at("notes")},
+                  {"passes", passes},
+                  {"errors", at("errors")},
+                  {"voxels", fmt::format("json_patch({}, {})", at("voxels"), at("voxels.holes"))}};
+  addTimes(all, [&](const std::string& what, const std::string& number) { return at(what + "." + number); });
+  return all;
+}
+
+/// Up to schema 3 mean and standard error over the seeds stood beside the RMSE of the first one, whose
+/// uncertainty is the reference's noise.
+Shown metricsOfOldNames() {
+  return {
+      "main.metrics m LEFT JOIN main.metrics o ON m.name = 'rmse' AND o.name = 'rmse_over_seeds' AND o.run = "
+      "m.run AND o.position = m.position WHERE m.name <> 'rmse_over_seeds'",
+      {{"run", "m.run"},
+       {"position", "m.position"},
+       {"name",
+        "CASE m.name WHEN 'non_finite_truth' THEN 'non_finite_reference' WHEN 'non_finite_picture' THEN "
+        "'non_finite_image' ELSE m.name END"},
+       {"value", "coalesce(o.value, m.value)"},
+       {"uncertainty",
+        "CASE WHEN o.name IS NULL THEN m.uncertainty ELSE sqrt(m.uncertainty * m.uncertainty + o.uncertainty * "
+        "o.uncertainty) END"},
+       {"of_nothing", "m.of_nothing"}}};
 }
 
 }  // namespace
 
-EarlierStore::EarlierStore(const std::filesystem::path& file) : database_(file, /*write=*/false) {
-  if (database_.pragma("application_id") != kApplicationId)
-    throw Error(fmt::format("{}: this is another kind of database; expected a results store", file.string()));
-  schema_ = database_.pragma("user_version");
-  if (schema_ == kSchemaVersion)
+void show(const Database& database, const std::string& table, const Shown& shown) {
+  std::set<std::string> present;
+  if (!shown.from.empty()) {
+    Statement column(database, "SELECT name FROM pragma_table_xinfo(?, 'main')");
+    const std::size_t from = shown.from.find('.') + 1;
+    for (column.bind(shown.from.substr(from, shown.from.find(' ') - from)); column.step();)
+      present.insert(column.text(0));
+  }
+  std::string columns;
+  for (const Table& one : storeTables())
+    for (const Column& column : one.columns) {
+      if (one.name != table) continue;
+      const auto expression = shown.expressions.find(column.name);
+      const std::size_t standard = column.definition.find("DEFAULT ");
+      columns += (columns.empty() ? "" : ", ") +
+                 (!shown.from.empty() && expression != shown.expressions.end() ? expression->second
+                  : present.count(column.name) > 0                             ? column.name
+                  : standard != std::string::npos ? column.definition.substr(standard + 8)
+                                                  : "NULL") +
+                 " AS " + column.name;
+    }
+  database.execute(fmt::format("CREATE TEMP VIEW {} AS SELECT {} {}", table, columns,
+                               shown.from.empty() ? "WHERE 0" : "FROM " + shown.from));
+}
+
+void showEarlierStore(const Database& database) {
+  const std::string file = database.file().string();
+  if (database.pragma("application_id") != kApplicationId)
+    throw Error(fmt::format("{}: this is another kind of database; expected a results store", file));
+  const std::int64_t schema = database.pragma("user_version");
+  if (schema == kSchemaVersion)
     throw Error(fmt::format(
-        "{}: it has the schema of this version; lumivox results merge copies what it holds", file.string()));
-  if (schema_ < 1 || schema_ > kLastEarlierSchema)
-    throw Error(fmt::format("{}: it has schema {}; expected one from 1 to {}", file.string(), schema_,
-                            kLastEarlierSchema));
-  for (const NamesOfOlder& names : kNamesOfOlder)
-    if (schema_ >= names.since && schema_ <= names.until)
-      database_.execute(fmt::format("CREATE TEMP VIEW {}", names.view).c_str());
-}
-
-std::vector<EarlierStore::Run> EarlierStore::runs() const {
-  std::vector<Run> runs;
-  Statement row(database_, "SELECT * FROM runs WHERE complete ORDER BY id");
-  while (row.step()) {
-    Run run;
-    const std::int64_t id = run.run.id = row.integer(0);
-    readRow(row, run.run);
-    readNames(run.run);
-    readTimes(run.run.point, id);
-    readErrors(run.run.point, id);
-    if (schema_ >= 7)
-      eachRow(database_, "SELECT * FROM voxels WHERE run = ?", id,
-              [&](const Statement& voxels) { readRow(voxels, run.run.point.voxels.emplace()); });
-    if (schema_ >= 4) {
-      eachRow(database_,
-              "SELECT output, component, reference, flip, png FROM images WHERE run = ? ORDER BY position",
-              id, [&](const Statement& image) {
-                run.images.push_back(
-                    {image.text(0), image.text(1), image.text(2), image.number(3), image.bytes(4)});
-              });
-      eachRow(
-          database_,
-          "SELECT created, what, median_ms, lower_quartile_ms, upper_quartile_ms, repeats FROM controls WHERE run = ?",
-          id, [&](const Statement& control) {
-            TimingStatistics time;
-            time.median = control.number(2);
-            time.lowerQuartile = control.number(3);
-            time.upperQuartile = control.number(4);
-            time.repeats = static_cast<int>(control.integer(5));
-            run.controls.push_back({control.text(0), control.text(1), time});
-          });
-    }
-    runs.push_back(std::move(run));
+        "{}: it has the schema of this version; lumivox results merge copies what it holds", file));
+  if (schema < 1 || schema > kSchemaVersion)
+    throw Error(
+        fmt::format("{}: it has schema {}; expected one from 1 to {}", file, schema, kSchemaVersion - 1));
+  const bool isOld = schema <= kOldNames, hasTables = schema <= kLastTables;
+  show(database, "runs", {"main.runs r", hasTables ? runsOfTables(schema) : runsOfRecords()});
+  // Where runs are JSON, so are their metrics.
+  show(database, "metrics", isOld ? metricsOfOldNames() : Shown{hasTables ? "main.metrics" : "", {}});
+  Expressions images, cells, rates;
+  if (isOld) {
+    images["reference"] = "truth";
+    cells["image"] = "picture";
+    cells["family"] = "replace(family, 'picture_and_camera', 'image_and_camera')";
   }
-  return runs;
-}
-
-void EarlierStore::readNames(StoredRun& run) const {
-  RunIdentity& identity = run.identity;
-  eachRow(database_, "SELECT name, value FROM parameters WHERE run = ?", run.id,
-          [&](const Statement& row) { identity.parameters[row.text(0)] = row.text(1); });
-  eachRow(database_, "SELECT kind, name, hash FROM provenance WHERE run = ?", run.id,
-          [&](const Statement& row) {
-            const std::string kind = row.text(0), name = row.text(1), hash = row.text(2);
-            if (kind == "flicker") identity.flickerPairs = std::atoi(name.c_str());
-            if (kind == "not_counted") run.point.whyNotCounted = name;
-            if (kind == "kept") identity.kept.push_back(name);
-            if (kind == "display") identity.display = name;
-            if (kind == "scene") identity.sceneHash = hash;
-            if (kind == "pipeline") identity.pipelineHash = hash;
-            if (kind == "framework") identity.framework = hash;
-            if (kind == "technique") identity.techniques[name] = hash;
-          });
-  eachRow(database_, "SELECT finding FROM health WHERE run = ? ORDER BY position", run.id,
-          [&](const Statement& row) { run.point.healthFindings.push_back(row.text(0)); });
-  if (schema_ >= 4)
-    eachRow(database_, "SELECT note FROM notes WHERE run = ? ORDER BY position", run.id,
-            [&](const Statement& row) { run.point.notes.push_back(row.text(0)); });
-}
-
-void EarlierStore::readTimes(ReportPoint& point, std::int64_t id) const {
-  eachRow(database_, "SELECT * FROM timings WHERE run = ?", id, [&](const Statement& row) {
-    const TimingStatistics time{row.number(3), row.number(4), row.number(5),
-                                row.number(6), row.number(7), static_cast<int>(row.integer(8))};
-    const std::string what = row.text(1), pass = row.text(2);
-    if (what == "frame") point.frameMs = time;
-    if (what == "next_frame") point.nextFrameMs = time;
-    if (what == "still_frame") point.stillFrameMs = time;
-    if (what == "moved_frame") point.movedFrameMs = time;
-    if (what == "pass_device") point.passDeviceMs[pass] = time;
-    if (what == "pass_host") point.passHostMs[pass] = time;
-  });
-  eachRow(database_, "SELECT name FROM passes WHERE run = ? ORDER BY position", id,
-          [&](const Statement& row) { point.passOrder.push_back(row.text(0)); });
-  eachRow(database_, "SELECT what, pass, bytes FROM resources WHERE run = ?", id, [&](const Statement& row) {
-    (row.text(0) == "peak" ? point.peakBytes : point.passBytes[row.text(1)]) =
-        static_cast<std::uint64_t>(row.integer(2));
-  });
-  if (schema_ >= 3)
-    eachRow(database_, "SELECT pass, name, amount FROM work WHERE run = ?", id,
-            [&](const Statement& row) { point.passWork[row.text(0)][row.text(1)] = row.number(2); });
-}
-
-void EarlierStore::readErrors(ReportPoint& point, std::int64_t id) const {
-  Statement metric(
-      database_,
-      "SELECT name, value, uncertainty, of_nothing FROM metrics WHERE run = ? AND position = ? ORDER BY name");
-  eachRow(database_, "SELECT * FROM errors WHERE run = ? ORDER BY position", id, [&](const Statement& row) {
-    ComponentError error;
-    error.everyMetricPerSeed = false;
-    readRow(row, error);
-    for (metric.bind(id, row.integer(1)); metric.step();) {
-      const NamedMetric one{metric.text(0), {metric.number(1), metric.number(2)}, metric.number(3)};
-      // Up to schema 3 mean and standard error over the seeds stood beside the RMSE of the first one, whose
-      // uncertainty is the reference's noise. It comes after it by name.
-      if (one.name == "rmse_over_seeds")
-        error.error.rmse = {one.measured.value,
-                            std::hypot(error.error.rmse.uncertainty, one.measured.uncertainty)};
-      else
-        setMetric(error, one);
-    }
-    point.errors.push_back(std::move(error));
-  });
-}
-
-std::vector<StressCell> EarlierStore::cells() const {
-  std::vector<StressCell> cells;
-  if (schema_ < 2) return cells;
-  Statement row(database_, "SELECT * FROM stress_cells ORDER BY id");
-  while (row.step()) {
-    StressCell cell;
-    readRow(row, cell);
-    if (cell.family == "picture_and_camera") cell.family = "image_and_camera";
-    eachRow(database_, "SELECT technique, hash FROM stress_provenance WHERE cell = ?", row.integer(0),
-            [&](const Statement& used) { cell.techniques[used.text(0)] = used.text(1); });
-    cells.push_back(std::move(cell));
-  }
-  return cells;
-}
-
-std::vector<PeakRate> EarlierStore::peakRates() const {
-  std::vector<PeakRate> rates;
-  if (schema_ < 2) return rates;
-  Statement row(database_, "SELECT * FROM peak_rates");
-  while (row.step()) readRow(row, rates.emplace_back());
-  return rates;
+  if (hasTables) rates = {{"id", "0"}, {"key", "''"}};
+  cells["techniques"] =
+      hasTables ? "(SELECT json_group_object(technique, hash) FROM stress_provenance WHERE cell = r.id)"
+                : "json_extract(record, '$.techniques')";
+  show(database, "images", {schema < 4 ? "" : isOld ? "main.pictures" : "main.images", images});
+  show(database, "controls", {schema < 4 ? "" : "main.controls", {}});
+  show(database, "stress_cells",
+       {schema < 2 ? "" : "main.stress_cells r", schema < 2 ? Expressions() : cells});
+  show(database, "peak_rates", {schema < 2 ? "" : isOld ? "main.ceilings" : "main.peak_rates", rates});
 }
 
 }  // namespace lumivox::results

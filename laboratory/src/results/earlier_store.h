@@ -1,38 +1,23 @@
-// Stores of schemas 1 to 8, in which every field of a record had a column: what `lumivox results import`
-// reads.
+// Stores of other versions, shown with the tables of this one.
 #pragma once
 
-#include <filesystem>
+#include <map>
 #include <string>
-#include <vector>
 
 #include "results/database.h"
-#include "results/store_state.h"
 
 namespace lumivox::results {
 
-class EarlierStore {
- public:
-  /// Error for a file that is no results store, or one of another schema.
-  explicit EarlierStore(const std::filesystem::path& file);
-
-  struct Run {
-    StoredRun run;
-    std::vector<StoredImage> images;
-    std::vector<Control> controls;
-  };
-  /// Without those that lack their times.
-  std::vector<Run> runs() const;
-  std::vector<StressCell> cells() const;
-  std::vector<PeakRate> peakRates() const;
-
- private:
-  void readNames(StoredRun& run) const;
-  void readTimes(ReportPoint& point, std::int64_t id) const;
-  void readErrors(ReportPoint& point, std::int64_t id) const;
-
-  Database database_;
-  std::int64_t schema_ = 0;
+/// How a table of this version is read from another store.
+struct Shown {
+  std::string from;                                ///< "main.runs r"; empty: it has no such table
+  std::map<std::string, std::string> expressions;  ///< of columns that are not there by their names
 };
+/// Makes a view of this connection, before the table of this name. What is in neither is what a record
+/// begins with.
+void show(const Database& database, const std::string& table, const Shown& shown);
+
+/// Shows a store of schemas 1 to 9. Error for a file that is no results store, or one of another schema.
+void showEarlierStore(const Database& database);
 
 }  // namespace lumivox::results

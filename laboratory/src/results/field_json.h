@@ -3,46 +3,64 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "lumivox/base/error.h"
 #include "lumivox/results/json.h"
 #include "results/fields.h"
-#include "results/json_text.h"
 
 namespace lumivox::results {
 
 using Json = nlohmann::ordered_json;
 
-/// Times are in ms, and say so.
 template <class T>
-constexpr const char* kUnitSuffix = std::same_as<T, TimingStatistics> ? "_ms" : "";
+concept IsOptional = requires(T& value) {
+  value.has_value();
+};
+template <class T>
+concept IsVector = requires(T& value) {
+  value.emplace_back();
+};
+template <class T>
+concept IsVec3 = std::same_as<T, glm::vec3> || std::same_as<T, glm::ivec3>;
 
+/// Null: NaN. An optional value that is absent is not written.
 template <class T>
 Json jsonOf(const T& value) {
   if constexpr (std::same_as<T, double>) {
     return numberJson(value);
-  } else if constexpr (std::same_as<T, glm::ivec3>) {
+  } else if constexpr (IsVec3<T>) {
     return {value.x, value.y, value.z};
   } else if constexpr (std::same_as<T, StressOutcome>) {
     return name(value);
-  } else if constexpr (std::same_as<T, std::optional<GatheredVoxels>>) {
-    return toJson(value);
-  } else if constexpr (std::same_as<T, std::vector<ComponentError>>) {
-    Json list = Json::array();
-    for (const ComponentError& error : value) list.push_back(jsonOf(error));
-    return list;
+  } else if constexpr (IsOptional<const T>) {
+    return value ? jsonOf(*value) : Json(nullptr);
+  } else if constexpr (std::same_as<T, ParameterValue>) {
+    return value.word.empty() ? numberJson(value.number) : Json(value.word);
   } else if constexpr (HasFields<const T>) {
     Json json = Json::object();
     fields(value, [&]<class M>(const Field& field, const M& member) {
-      json[std::same_as<M, double> ? std::string(field.name) + kUnitSuffix<T> : field.name] = jsonOf(member);
+      if constexpr (IsOptional<const M>)
+        if (!member) return;
+      json[field.name] = jsonOf(member);
     });
+    return json;
+  } else if constexpr (IsVector<T>) {
+    Json list = Json::array();
+    for (const auto& one : value) list.push_back(jsonOf(one));
+    return list;
+  } else if constexpr (requires { typename T::mapped_type; }) {
+    Json json = Json::object();
+    for (const auto& [name, one] : value) json[name] = jsonOf(one);
     return json;
   } else {
     return value;
   }
+}
+
+template <class T>
+Json jsonOf(const Derived<T>& derived) {
+  return jsonOf(derived.value);
 }
 
 template <class Flag>
@@ -59,126 +77,59 @@ Json jsonOf(const Metrics<Error>& metrics) {
 
 template <class Point>
 Json jsonOf(const Passes<Point>& passes) {
-  const ReportPoint& point = passes.point;
-  std::vector<std::string> names = point.passOrder;
-  // The work is counted before the times are taken, which say in which order the passes ran.
-  for (const auto& [name, work] : point.passWork)
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  Json list = Json::array();
-  for (const std::string& name : names) {
-    Json pass{{"name", name}};
-    if (list.size() >= point.passOrder.size()) pass["ran"] = false;
-    const auto add = [&](const char* what, const auto& all) {
-      if (const auto found = all.find(name); found != all.end()) pass[what] = jsonOf(found->second);
-    };
-    add("device", point.passDeviceMs);
-    add("host", point.passHostMs);
-    add("bytes", point.passBytes);
-    add("work", point.passWork);
-    list.push_back(std::move(pass));
+  return jsonOf(passesOf(passes.point));
+}
+
+/// What the text lacks stays as it is, and what is not known here is passed over.
+template <class T>
+void read(const Json& json, T& value) {
+  if constexpr (std::same_as<T, double>) {
+    value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+  } else if constexpr (std::same_as<T, bool>) {
+    value = json.is_boolean() ? json.get<bool>() : json.get<int>() != 0;  // SQLite has no other
+  } else if constexpr (IsVec3<T>) {
+    for (int axis = 0; axis < 3; ++axis) value[axis] = json.at(static_cast<std::size_t>(axis));
+  } else if constexpr (std::same_as<T, StressOutcome>) {
+    value = stressOutcomeNamed(json).value_or(StressOutcome::broken);
+  } else if constexpr (IsOptional<T>) {
+    if (!json.is_null()) read(json, value.emplace());
+  } else if constexpr (HasFields<T>) {
+    fields(value, [&](const Field& field, auto&& member) {
+      if (const auto found = json.find(field.name); found != json.end()) read(*found, member);
+    });
+  } else if constexpr (IsVector<T>) {
+    for (const Json& one : json) read(one, value.emplace_back());
+  } else if constexpr (requires { typename T::mapped_type; }) {
+    for (const auto& [name, one] : json.items()) read(one, value[name]);
+  } else {
+    value = json.get<T>();
   }
-  return list;
 }
 
 template <class T>
-void read(JsonText& text, T& value);
+void read(const Json&, Derived<T>&) {}
 
 template <class Flag>
-void read(JsonText& text, Against<Flag>& against) {
-  against.bias = text.string() == "bias";
+void read(const Json& json, Against<Flag>& against) {
+  against.bias = json == "bias";
 }
 
 template <class Error>
-void read(JsonText& text, Metrics<Error>& metrics) {
-  text.object([&](const std::string& name) {
+void read(const Json& json, Metrics<Error>& metrics) {
+  for (const auto& [name, one] : json.items()) {
     NamedMetric metric;
-    read(text, metric);
+    read(one, metric);
     metric.name = name;
-    setMetric(metrics.error, metric);  // one of a later version is passed over
-  });
-}
-
-template <class Point>
-void read(JsonText& text, Passes<Point>& passes) {
-  Point& point = passes.point;
-  text.array([&] {
-    std::string name;
-    bool ran = true;
-    text.object([&](const std::string& key) {
-      if (key == "name") return read(text, name);
-      if (key == "ran") return read(text, ran);
-      if (key == "device") return read(text, point.passDeviceMs[name]);
-      if (key == "host") return read(text, point.passHostMs[name]);
-      if (key == "bytes") return read(text, point.passBytes[name]);
-      if (key == "work") return read(text, point.passWork[name]);
-      text.skip();
-    });
-    if (ran) point.passOrder.push_back(name);
-  });
-}
-
-/// How many of the record's fields were there. One of an earlier version lacks some, one of a later version
-/// has more.
-template <class T>
-int readFields(JsonText& text, T& record) {
-  int found = 0;
-  text.object([&](std::string_view key) {
-    const int before = found;
-    // Without the suffix of numbers: no other field has the same name up to it.
-    const std::string_view suffix = kUnitSuffix<T>;
-    if (!suffix.empty() && key.ends_with(suffix)) key.remove_suffix(suffix.size());
-    fields(record, [&](const Field& field, auto&& member) {
-      if (found > before || key != field.name) return;
-      read(text, member);
-      ++found;
-    });
-    if (found == before) text.skip();
-  });
-  return found;
-}
-
-template <class T>
-void read(JsonText& text, T& value) {
-  if constexpr (std::same_as<T, double>) {
-    value = text.takesNull() ? std::numeric_limits<double>::quiet_NaN() : text.number<double>();
-  } else if constexpr (std::same_as<T, bool>) {
-    value = text.boolean();
-  } else if constexpr (std::integral<T>) {
-    value = text.number<T>();
-  } else if constexpr (std::same_as<T, std::string>) {
-    value = text.string();
-  } else if constexpr (std::same_as<T, glm::ivec3>) {
-    int axis = 0;
-    text.array([&] { read(text, value[axis++ % 3]); });
-  } else if constexpr (std::same_as<T, StressOutcome>) {
-    value = stressOutcomeNamed(text.string()).value_or(StressOutcome::broken);
-  } else if constexpr (std::same_as<T, std::optional<GatheredVoxels>>) {
-    if (!text.takesNull()) read(text, value.emplace());
-  } else if constexpr (HasFields<T>) {
-    readFields(text, value);
-  } else if constexpr (requires { value.emplace_back(); }) {
-    text.array([&] { read(text, value.emplace_back()); });
-  } else {
-    text.object([&](const std::string& key) { read(text, value[key]); });
+    setMetric(metrics.error, metric);
   }
 }
 
-/// A record as the store keeps it.
-template <class T>
-std::string recordText(const T& record) {
-  return textOf(jsonOf(record), -1);
-}
-
-template <class T>
-T recordFrom(const std::string& json) {
-  try {
-    T record;
-    JsonText text(json);
-    read(text, record);
-    text.end();
-    return record;
-  } catch (const Error& error) {
-    throw Error(fmt::format("'{}' is no record of a results store: {}", json.substr(0, 200), error.what()));
+template <class Point>
+void read(const Json& json, Passes<Point>& passes) {
+  for (const Json& one : json) {
+    PassFields pass;
+    read(one, pass);
+    addPass(passes.point, std::move(pass));
   }
 }
 

@@ -7,87 +7,62 @@
 namespace lumivox {
 namespace {
 
-/// Reads or writes one metric; the same list serves both ways.
+/// Visits each metric with its members: name, value, uncertainty, value of a black image. Those that it has
+/// not are constants.
 template <class Error, class Visit>
 void visitMetrics(Error& error, Visit visit) {
   auto& e = error.error;
   auto& n = error.errorOfNothing;
-  visit("rmse", e.rmse.value, &e.rmse.uncertainty, n.rmse.value);
-  visit("relative_mse", e.relativeMse.value, &e.relativeMse.uncertainty, n.relativeMse.value);
-  visit("mean_ratio", e.meanRatio.value, &e.meanRatio.uncertainty, n.meanRatio.value);
-  visit("bias", e.bias.value, &e.bias.uncertainty, n.bias.value);
-  visit("percentile95", e.percentile95, &e.percentile95Uncertainty, n.percentile95);
-  visit("ssim", e.ssim, &e.ssimUncertainty, n.ssim);
-  visit("flip", e.flip, &e.flipUncertainty, n.flip);
-  visit("flip_ldr", e.flipLdr, &e.flipLdrUncertainty, n.flipLdr);
+  double zero = 0.0, none = std::numeric_limits<double>::quiet_NaN();
+  const double rmseOfNothing = n.rmse.value, floorOfNothing = n.noiseFloor;
+  double biasOfNothing =
+      std::sqrt(std::max(0.0, rmseOfNothing * rmseOfNothing - floorOfNothing * floorOfNothing));
+  visit("rmse", e.rmse.value, e.rmse.uncertainty, n.rmse.value);
+  visit("relative_mse", e.relativeMse.value, e.relativeMse.uncertainty, n.relativeMse.value);
+  visit("mean_ratio", e.meanRatio.value, e.meanRatio.uncertainty, n.meanRatio.value);
+  visit("bias", e.bias.value, e.bias.uncertainty, n.bias.value);
+  visit("percentile95", e.percentile95, e.percentile95Uncertainty, n.percentile95);
+  visit("ssim", e.ssim, e.ssimUncertainty, n.ssim);
+  visit("flip", e.flip, e.flipUncertainty, n.flip);
+  visit("flip_ldr", e.flipLdr, e.flipLdrUncertainty, n.flipLdr);
+  visit("rms_bias", error.parts.bias.value, error.parts.bias.uncertainty, biasOfNothing);
+  visit("rms_noise", error.parts.noise.value, error.parts.noise.uncertainty, zero);
+  visit("flicker", error.flicker.value, error.flicker.uncertainty, none);
+  visit("exposure_ev", e.exposure, zero, n.exposure);
+  visit("noise_floor", e.noiseFloor, zero, n.noiseFloor);
+  visit("non_finite_image", e.nonFiniteImage, zero, zero);
+  visit("non_finite_reference", e.nonFiniteReference, zero, zero);
+}
+
+/// Such that no spread over seeds belongs to them.
+bool isCount(const std::string& metric) {
+  return metric == "exposure_ev" || metric == "noise_floor" || metric.starts_with("non_finite");
 }
 
 }  // namespace
 
 std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   std::vector<NamedMetric> metrics;
-  visitMetrics(error, [&](const char* name, double value, const double* uncertainty, double ofNothing) {
-    metrics.push_back({name, {value, *uncertainty}, ofNothing});
+  visitMetrics(error, [&](const std::string& name, auto value, double uncertainty, double ofNothing) {
+    const bool enough =
+        error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed || name == "rmse");
+    metrics.push_back({name, {static_cast<double>(value), uncertainty, isCount(name) || enough}, ofNothing});
   });
-  const double floorOfNothing = error.errorOfNothing.noiseFloor,
-               rmseOfNothing = error.errorOfNothing.rmse.value;
-  const double biasOfNothing =
-      std::sqrt(std::max(0.0, rmseOfNothing * rmseOfNothing - floorOfNothing * floorOfNothing));
-  metrics.push_back({"rms_bias", error.parts.bias, biasOfNothing});
-  metrics.push_back({"rms_noise", error.parts.noise, 0.0});
-  metrics.push_back({"flicker", error.flicker, std::numeric_limits<double>::quiet_NaN()});
-  for (NamedMetric& metric : metrics)
-    metric.measured.enoughRepeats = error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed ||
-                                                            metric.name == std::string("rmse"));
-  metrics.push_back({"exposure_ev", {error.error.exposure, 0.0}, error.errorOfNothing.exposure});
-  metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
-  metrics.push_back({"non_finite_image", {static_cast<double>(error.error.nonFiniteImage), 0.0}, 0.0});
-  metrics.push_back(
-      {"non_finite_reference", {static_cast<double>(error.error.nonFiniteReference), 0.0}, 0.0});
   return metrics;
-}
-
-std::vector<std::pair<std::string, double>> metricsOf(const std::optional<GatheredVoxels>& voxels) {
-  const bool judged = voxels && voxels->whyNot.empty();
-  const auto number = [&](double value) { return judged ? value : std::numeric_limits<double>::quiet_NaN(); };
-  const GatheredVoxels& of = judged ? *voxels : GatheredVoxels();
-  return {{"recall", number(of.error.recall())},
-          {"precision", number(of.error.precision())},
-          {"axis_holes", number(of.holes.axisShare())},
-          {"oblique_holes", number(of.holes.obliqueShare())}};
 }
 
 bool setMetric(ComponentError& error, const NamedMetric& metric) {
   bool known = false;
-  visitMetrics(error, [&](const char* name, double& value, double* uncertainty, double& ofNothing) {
-    if (metric.name != name) return;
-    value = metric.measured.value;
-    *uncertainty = metric.measured.uncertainty;
-    ofNothing = metric.ofNothing;
-    known = true;
-  });
-  if (known) return true;
-  if (metric.name == "rms_bias") {
-    error.parts.bias = metric.measured;
-  } else if (metric.name == "rms_noise") {
-    error.parts.noise = metric.measured;
-  } else if (metric.name == "flicker") {
-    error.flicker = metric.measured;
-  } else if (metric.name == "exposure_ev") {
-    error.error.exposure = metric.measured.value;
-    error.errorOfNothing.exposure = metric.ofNothing;
-  } else if (metric.name == "noise_floor") {
-    error.parts.referenceNoise = metric.measured.value;
-    error.error.noiseFloor = metric.measured.value;
-    error.errorOfNothing.noiseFloor = metric.ofNothing;
-  } else if (metric.name == "non_finite_image") {
-    error.error.nonFiniteImage = static_cast<std::uint64_t>(metric.measured.value);
-  } else if (metric.name == "non_finite_reference") {
-    error.error.nonFiniteReference = static_cast<std::uint64_t>(metric.measured.value);
-  } else {
-    return false;
-  }
-  return true;
+  visitMetrics(error,
+               [&]<class T>(const std::string& name, T& value, double& uncertainty, double& ofNothing) {
+                 if (metric.name != name) return;
+                 value = static_cast<T>(metric.measured.value);
+                 uncertainty = metric.measured.uncertainty;
+                 ofNothing = metric.ofNothing;
+                 known = true;
+               });
+  if (metric.name == "noise_floor") error.parts.referenceNoise = metric.measured.value;
+  return known;
 }
 
 }  // namespace lumivox

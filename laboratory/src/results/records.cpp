@@ -71,17 +71,21 @@ std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene) {
   return points;
 }
 
-std::vector<StoredRun> runsOf(const ReportRecord& report) {
+std::vector<StoredRun> runsOf(const ReportRecord& report, const SceneRecord& scene) {
   std::vector<StoredRun> runs;
-  for (const SceneRecord& scene : report.scenes)
-    for (const PointRecord& record : scene.points) {
-      StoredRun run;
-      run.identity = record.identity;
-      run.created = record.created;
-      run.isDefault = record.isDefault;
-      run.point = record.point;
-      runs.push_back(std::move(run));
-    }
+  for (const PointRecord& record : scene.points) {
+    StoredRun& run = runs.emplace_back();
+    run.identity = record.identity;
+    for (const auto& [name, value] : record.point.parameters)
+      run.identity.parameters.emplace(name, value.text());  // of a point that was not measured
+    run.created = record.created;
+    run.version = LUMIVOX_VERSION;
+    run.sceneName = scene.name;
+    for (const PipelineRecord& pipeline : report.pipelines)
+      if (pipeline.file == record.point.pipeline) run.pipelineName = pipeline.name;
+    run.isDefault = record.isDefault;
+    run.point = record.point;
+  }
   return runs;
 }
 

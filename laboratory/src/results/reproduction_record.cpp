@@ -2,221 +2,164 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <span>
 #include <tuple>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/results/json.h"
 #include "lumivox/results/reproduction.h"
+#include "results/field_json.h"
 
 namespace lumivox {
+namespace results {
+
+constexpr Growth kGrowths[] = {Growth::unsaid, Growth::sublinear, Growth::linear, Growth::superlinear};
+
+/// A word of its own.
+template <class Enum>
+struct Word {
+  Enum& value;
+  std::span<const std::remove_const_t<Enum>> all;
+};
+/// Records, each with its verdict: for readers that do not know the rule; on reading it is judged anew.
+template <class Records, class Verdicts>
+struct Judged {
+  Records& records;
+  const Verdicts& verdicts;
+};
+
+void setUpFields(auto& setUp, auto&& visit) {
+  visit({"why_not"}, setUp.whyNot);
+  visit({"failed"}, setUp.failed);
+  visit({"measured"}, setUp.measured);  // frame rates as times of frames: what is compared
+}
+
+void quantityFields(auto& record, auto&& visit) {
+  visit({"measures"}, Word{record.quantity, std::span(kPublishedQuantities)});
+  visit({"unit"}, Derived{unit(record.quantity)});
+}
+
+void verdictFields(const auto& judged, auto&& visit) {
+  visit({"verdict"}, Derived{name(judged.verdict)});
+  visit({"why"}, judged.why);
+}
+
+void fields(Is<MeasuredRow> auto& row, auto&& visit) {
+  visit({"row"}, row.name);
+  quantityFields(row, visit);
+  visit({"published"}, row.published);
+  visit({"over"}, row.over);
+  setUpFields(row, visit);
+}
+
+void fields(Is<JudgedRow> auto& judged, auto&& visit) {
+  visit({"published_ratio"}, judged.publishedRatio);
+  visit({"ratio"}, judged.ratio);
+  visit({"ratio_low"}, judged.lowRatio);
+  visit({"ratio_high"}, judged.highRatio);
+  verdictFields(judged, visit);
+}
+
+void fields(Is<MeasuredPoint> auto& point, auto&& visit) {
+  visit({"x"}, point.x);
+  setUpFields(point, visit);
+}
+
+void fields(Is<MeasuredCurve> auto& curve, auto&& visit) {
+  visit({"curve"}, curve.name);
+  visit({"over"}, curve.over);
+  quantityFields(curve, visit);
+  visit({"published_growth"}, Word{curve.growth, std::span(kGrowths)});
+  visit({"points"}, curve.points);
+}
+
+void fields(Is<JudgedCurve> auto& judged, auto&& visit) {
+  visit({"exponent"}, judged.exponent.value);
+  visit({"exponent_uncertainty"}, judged.exponent.uncertainty);
+  verdictFields(judged, visit);
+}
+
+void fields(Is<ShownPanel> auto& panel, auto&& visit) {
+  visit({"panel"}, panel.name);
+  visit({"why_not"}, panel.whyNot);
+  visit({"failed"}, panel.failed);
+  visit({"mean_luminance"}, panel.meanLuminance);
+  visit({"radiance"}, panel.radiance);
+}
+
+void fields(Is<MeasuredClaim> auto& claim, auto&& visit) {
+  visit({"claim"}, claim.name);
+  visit({"of"}, Word{claim.quantity, std::span(kClaimedQuantities)});
+  visit({"less"}, claim.less);
+  visit({"than"}, claim.than);
+  visit({"dark_in"}, claim.darkIn);
+  visit({"times"}, claim.times);
+  visit({"less_value"}, claim.lessValue);
+  visit({"than_value"}, claim.thanValue);
+  visit({"why_not"}, claim.whyNot);
+}
+
+void fields(Is<JudgedClaim> auto& judged, auto&& visit) {
+  verdictFields(judged, visit);
+}
+
+void fields(Is<ReproducedResult> auto& result, auto&& visit) {
+  auto& published = result.published;
+  visit({"id"}, published.id);
+  visit({"title"}, published.title);
+  visit({"paper"}, published.paper);
+  visit({"published_on"}, published.device);
+  visit({"device"}, result.device.renderer);
+  visit({"driver"}, result.device.version);
+  visit({"software"}, result.device.software);
+  visit({"host"}, result.host);
+  visit({"date"}, result.date);
+  visit({"scale"}, result.scale);
+  visit({"scaled"}, published.scaled);
+  visit({"repeats"}, result.repeats);
+  visit({"verdict"}, Derived{result.rows.empty() ? "" : name(result.judged.verdict)});
+  visit({"why"}, Derived{result.rows.empty() ? std::string() : result.judged.why});
+  visit({"rows"}, Judged{result.rows, result.judged.rows});
+  visit({"curves"}, Judged{result.curves, result.judgedCurves});
+  visit({"panels"}, result.panels);
+  visit({"claims"}, Judged{result.claims, result.judgedClaims});
+  visit({"exposure_ev"}, result.exposure);
+  visit({"set_ups"}, result.setUps);
+  visit({"differences"}, published.differences);
+  visit({"command"}, result.command);
+}
+
+template <class Enum>
+Json jsonOf(const Word<Enum>& word) {
+  return name(word.value);
+}
+
+template <class Enum>
+void read(const Json& json, Word<Enum>& word) {
+  for (const Enum one : word.all)
+    if (json == name(one)) return static_cast<void>(word.value = one);
+  throw Error(fmt::format("'{}' is none of its words", json.get<std::string>()));
+}
+
+template <class Records, class Verdicts>
+Json jsonOf(const Judged<Records, Verdicts>& judged) {
+  Json list = jsonOf(judged.records);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].update(jsonOf(judged.verdicts.at(i)));
+  return list;
+}
+
+template <class Records, class Verdicts>
+void read(const Json& json, Judged<Records, Verdicts>& judged) {
+  read(json, judged.records);
+}
+
+}  // namespace results
+
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-
-double numberOrNothing(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
-/// For readers that do not know the rule; on reading it is judged anew.
-Json judgedJson(const JudgedRow& judged) {
-  return {{"published_ratio", numberJson(judged.publishedRatio)},
-          {"ratio", numberJson(judged.ratio)},
-          {"ratio_low", numberJson(judged.lowRatio)},
-          {"ratio_high", numberJson(judged.highRatio)},
-          {"verdict", name(judged.verdict)},
-          {"why", judged.why}};
-}
-
-void addMeasured(Json& json, const MeasuredSetUp& setUp) {
-  json["why_not"] = setUp.whyNot;
-  json["failed"] = setUp.failed;
-  if (const auto& time = setUp.measured)
-    // Frame rates as times of frames: what is compared.
-    json["measured"] = {{"median", time->median},
-                        {"lower_quartile", time->lowerQuartile},
-                        {"upper_quartile", time->upperQuartile},
-                        {"smallest", time->smallest},
-                        {"largest", time->largest},
-                        {"repeats", time->repeats}};
-}
-
-void readMeasured(const Json& json, MeasuredSetUp& setUp) {
-  setUp.whyNot = json.at("why_not");
-  setUp.failed = json.at("failed");
-  if (!json.contains("measured")) return;
-  const Json& time = json.at("measured");
-  setUp.measured = TimingStatistics{time.at("median"),   time.at("lower_quartile"), time.at("upper_quartile"),
-                                    time.at("smallest"), time.at("largest"),        time.at("repeats")};
-}
-
-PublishedQuantity quantityOf(const Json& json) {
-  for (const PublishedQuantity quantity : kPublishedQuantities)
-    if (json.at("measures") == name(quantity)) return quantity;
-  throw Error(fmt::format("nothing is measured as '{}'", json.at("measures").get<std::string>()));
-}
-
-Json rowJson(const MeasuredRow& row, const JudgedRow& judged) {
-  Json json{{"row", row.name},
-            {"measures", name(row.quantity)},
-            {"unit", unit(row.quantity)},
-            {"published", row.published}};
-  if (!row.over.empty()) json["over"] = row.over;
-  addMeasured(json, row);
-  json.update(judgedJson(judged));
-  return json;
-}
-
-MeasuredRow readRow(const Json& json) {
-  MeasuredRow row;
-  row.name = json.at("row");
-  row.quantity = quantityOf(json);
-  row.published = json.at("published");
-  row.over = json.value("over", "");
-  readMeasured(json, row);
-  return row;
-}
-
-Json curveJson(const MeasuredCurve& curve, const JudgedCurve& judged) {
-  Json points = Json::array();
-  for (const MeasuredPoint& point : curve.points) {
-    Json one{{"x", numberJson(point.x)}};
-    addMeasured(one, point);
-    points.push_back(std::move(one));
-  }
-  return {{"curve", curve.name},
-          {"over", curve.over},
-          {"measures", name(curve.quantity)},
-          {"unit", unit(curve.quantity)},
-          {"published_growth", name(curve.growth)},
-          {"exponent", numberJson(judged.exponent.value)},
-          {"exponent_uncertainty", numberJson(judged.exponent.uncertainty)},
-          {"verdict", name(judged.verdict)},
-          {"why", judged.why},
-          {"points", std::move(points)}};
-}
-
-MeasuredCurve readCurve(const Json& json) {
-  MeasuredCurve curve;
-  curve.name = json.at("curve");
-  curve.over = json.at("over");
-  curve.quantity = quantityOf(json);
-  for (const Growth growth : {Growth::sublinear, Growth::linear, Growth::superlinear})
-    if (json.at("published_growth") == name(growth)) curve.growth = growth;
-  for (const Json& one : json.at("points")) {
-    MeasuredPoint point;
-    point.x = numberOrNothing(one.at("x"));
-    readMeasured(one, point);
-    curve.points.push_back(std::move(point));
-  }
-  return curve;
-}
-
-Json claimJson(const MeasuredClaim& claim, const JudgedClaim& judged) {
-  Json json{{"claim", claim.name}, {"of", name(claim.quantity)}, {"less", claim.less}, {"than", claim.than}};
-  if (!claim.darkIn.empty()) json["dark_in"] = claim.darkIn;
-  if (claim.times != 1.0) json["times"] = claim.times;
-  json["less_value"] = numberJson(claim.lessValue);
-  json["than_value"] = numberJson(claim.thanValue);
-  json["why_not"] = claim.whyNot;
-  json["verdict"] = name(judged.verdict);
-  json["why"] = judged.why;
-  return json;
-}
-
-MeasuredClaim readClaim(const Json& json) {
-  MeasuredClaim claim;
-  claim.name = json.at("claim");
-  for (const ClaimedQuantity quantity : kClaimedQuantities)
-    if (json.at("of") == name(quantity)) claim.quantity = quantity;
-  claim.less = json.at("less");
-  claim.than = json.at("than");
-  claim.darkIn = json.value("dark_in", "");
-  claim.times = json.value("times", 1.0);
-  claim.lessValue = numberOrNothing(json.at("less_value"));
-  claim.thanValue = numberOrNothing(json.at("than_value"));
-  claim.whyNot = json.at("why_not");
-  return claim;
-}
-
-Json resultJson(const ReproducedResult& result) {
-  Json rows = Json::array(), curves = Json::array(), panels = Json::array(), claims = Json::array();
-  for (std::size_t i = 0; i < result.claims.size(); ++i)
-    claims.push_back(claimJson(result.claims[i], result.judgedClaims[i]));
-  for (std::size_t i = 0; i < result.rows.size(); ++i)
-    rows.push_back(rowJson(result.rows[i], result.judged.rows[i]));
-  for (std::size_t i = 0; i < result.curves.size(); ++i)
-    curves.push_back(curveJson(result.curves[i], result.judgedCurves[i]));
-  for (const ShownPanel& panel : result.panels) {
-    panels.push_back({{"panel", panel.name},
-                      {"why_not", panel.whyNot},
-                      {"failed", panel.failed},
-                      {"mean_luminance", numberJson(panel.meanLuminance)}});
-    if (!panel.radiance) panels.back()["radiance"] = false;
-  }
-  return {{"id", result.published.id},
-          {"title", result.published.title},
-          {"paper", result.published.paper},
-          {"published_on", result.published.device},
-          {"device", result.device.renderer},
-          {"driver", result.device.version},
-          {"software", result.device.software},
-          {"host", result.host},
-          {"date", result.date},
-          {"scale", result.scale},
-          {"scaled", result.published.scaled},
-          {"repeats", result.repeats},
-          {"verdict", result.rows.empty() ? "" : name(result.judged.verdict)},
-          {"why", result.rows.empty() ? "" : result.judged.why},
-          {"rows", std::move(rows)},
-          {"curves", std::move(curves)},
-          {"panels", std::move(panels)},
-          {"claims", std::move(claims)},
-          {"exposure_ev", result.exposure},
-          {"set_ups", result.setUps},
-          {"differences", result.published.differences},
-          {"command", result.command}};
-}
-
-ReproducedResult readResult(const Json& json) {
-  ReproducedResult result;
-  PublishedResult& published = result.published;
-  published.id = json.at("id");
-  published.title = json.at("title");
-  published.paper = json.at("paper");
-  published.device = json.at("published_on");
-  published.scaled = json.at("scaled").get<std::vector<std::string>>();
-  published.differences = json.at("differences").get<std::vector<std::string>>();
-  result.device.renderer = json.at("device");
-  result.device.version = json.at("driver");
-  result.device.software = json.at("software");
-  result.host = json.at("host");
-  result.date = json.at("date");
-  result.scale = json.at("scale");
-  result.repeats = json.at("repeats");
-  result.exposure = json.at("exposure_ev");
-  result.setUps = json.at("set_ups").get<std::vector<std::string>>();
-  result.command = json.at("command");
-  for (const Json& row : json.at("rows")) result.rows.push_back(readRow(row));
-  for (const Json& curve : json.at("curves")) result.curves.push_back(readCurve(curve));
-  for (const Json& one : json.at("panels")) {
-    ShownPanel panel;
-    panel.name = one.at("panel");
-    panel.whyNot = one.at("why_not");
-    panel.failed = one.at("failed");
-    panel.radiance = one.value("radiance", true);
-    panel.meanLuminance = numberOrNothing(one.at("mean_luminance"));
-    result.panels.push_back(std::move(panel));
-  }
-  // Results that were kept before there were claims have none.
-  for (const Json& one : json.value("claims", Json::array())) result.claims.push_back(readClaim(one));
-  return result;
-}
 
 std::string countText(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -271,24 +214,23 @@ void compareFigures(const ReproducedResult& kept, const PublishedResult& text,
 
 }  // namespace
 
-std::string reproductionsAsJson(const std::vector<ReproducedResult>& results) {
-  Json all = Json::array();
-  for (const ReproducedResult& result : results) all.push_back(resultJson(result));
-  return Json{{"version", kVersion}, {"results", std::move(all)}}.dump(1) + "\n";
+std::string reproductionsAsJson(const std::vector<ReproducedResult>& all) {
+  return Json{{"version", kVersion}, {"results", results::jsonOf(all)}}.dump(1) + "\n";
 }
 
 std::vector<ReproducedResult> readReproductions(const std::filesystem::path& file) {
   const std::string text = readFile(file);
   std::string place;
-  std::vector<ReproducedResult> results;
+  std::vector<ReproducedResult> found;
   try {
     const Json json = Json::parse(text);
     if (json.at("version") != kVersion)
       throw Error(
           fmt::format("version {} is not known here; expected {}", json.at("version").dump(), kVersion));
     for (const Json& one : json.at("results")) {
-      place = fmt::format(", results[{}]", results.size());
-      results.push_back(readResult(one));
+      place = fmt::format(", results[{}]", found.size());
+      one.at("rows");
+      results::read(one, found.emplace_back());
     }
   } catch (const nlohmann::json::exception& error) {
     throw Error(
@@ -297,7 +239,7 @@ std::vector<ReproducedResult> readReproductions(const std::filesystem::path& fil
   } catch (const Error& error) {
     throw Error(fmt::format("{}{}: {}", file.string(), place, error.what()));
   }
-  return results;
+  return found;
 }
 
 std::vector<std::string> staleReproductions(const std::vector<ReproducedResult>& results,

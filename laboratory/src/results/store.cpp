@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -12,7 +13,7 @@
 #include "lumivox/base/file.h"
 #include "results/database.h"
 #include "results/earlier_store.h"
-#include "results/field_json.h"
+#include "results/record_rows.h"
 #include "results/store_schema.h"
 #include "results/store_state.h"
 
@@ -58,12 +59,32 @@ ParameterValue valueOf(const std::string& text) {
   return value;
 }
 
-StoredRun runFrom(std::int64_t id, const std::string& json) {
-  auto run = results::recordFrom<StoredRun>(json);
-  run.id = id;
-  for (const auto& [name, text] : run.identity.parameters) run.point.parameters[name] = valueOf(text);
-  return run;
-}
+/// Whole runs, one after the other.
+class RunReader {
+ public:
+  RunReader(const results::Database& database, const std::string& where)
+      : rows(database,
+             fmt::format("SELECT id, {} FROM runs WHERE {}", results::columnNames<StoredRun>(), where)),
+        metrics_(database, fmt::format("SELECT position, name, {} FROM metrics WHERE run = ?",
+                                       results::columnNames<NamedMetric>())) {}
+  std::optional<StoredRun> next() {
+    if (!rows.step()) return std::nullopt;
+    auto run = results::recordAt<StoredRun>(rows, 1);
+    run.id = rows.integer(0);
+    for (const auto& [name, text] : run.identity.parameters) run.point.parameters[name] = valueOf(text);
+    for (metrics_.bind(run.id); metrics_.step();) {
+      auto metric = results::recordAt<NamedMetric>(metrics_, 2);
+      metric.name = metrics_.text(1);
+      setMetric(run.point.errors.at(static_cast<std::size_t>(metrics_.integer(0))), metric);
+    }
+    return run;
+  }
+
+  Statement rows;  ///< to be bound
+
+ private:
+  Statement metrics_;
+};
 
 }  // namespace
 
@@ -83,6 +104,7 @@ ResultsStore::ResultsStore(const fs::path& file, Mode mode) {
   state_->requireSchema();
 }
 
+ResultsStore::ResultsStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ResultsStore::~ResultsStore() = default;
 ResultsStore::ResultsStore(ResultsStore&&) noexcept = default;
 ResultsStore& ResultsStore::operator=(ResultsStore&&) noexcept = default;
@@ -96,9 +118,9 @@ void ResultsStore::State::requireSchema() {
     Transaction transaction(database);
     // Another process may have made it while this one waited.
     if (isEmpty()) {
-      database.execute(results::schemaSql().c_str());
-      database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
-      database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId).c_str());
+      database.execute(results::schemaSql());
+      database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion));
+      database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId));
     }
     transaction.commit();
   }
@@ -106,7 +128,7 @@ void ResultsStore::State::requireSchema() {
   if (database.pragma("application_id") != results::kApplicationId)
     throw Error(fmt::format("{}: this is another kind of database; expected a results store", file));
   const std::int64_t schema = database.pragma("user_version");
-  if (schema >= 1 && schema <= results::kLastEarlierSchema)
+  if (schema >= 1 && schema < results::kSchemaVersion)
     throw Error(fmt::format(
         "{}: an earlier version wrote it, with schema {}; lumivox results import {} --store NEW copies "
         "what it holds into a store of this version",
@@ -114,6 +136,37 @@ void ResultsStore::State::requireSchema() {
   if (schema != results::kSchemaVersion)
     throw Error(fmt::format("{}: it has schema {}; expected a results store with schema {}", file, schema,
                             results::kSchemaVersion));
+  addNewFields();
+}
+
+/// An earlier version made the tables with the columns of its fields, and the views.
+void ResultsStore::State::addNewFields() {
+  std::map<std::string, std::string> present;
+  Statement row(database, "SELECT name, sql FROM sqlite_schema");
+  while (row.step()) present[row.text(0)] = row.text(1);
+  for (const results::Table& table : results::storeTables()) {
+    if (present[table.name] == table.sql()) continue;
+    const bool isView = table.options == nullptr;
+    const auto lacking = [&] {
+      std::vector<const results::Column*> columns;
+      Statement there(database, "SELECT 1 FROM pragma_table_info(?) WHERE name = ?");
+      for (const results::Column& column : table.columns)
+        if (!isView && !there.bind(table.name, column.name).step()) columns.push_back(&column);
+      return columns;
+    };
+    if (!isView && lacking().empty()) continue;
+    if (mode == Mode::read) {
+      if (!isView) results::show(database, table.name, {fmt::format("main.{} r", table.name), {}});
+      continue;
+    }
+    Transaction transaction(database);
+    if (isView) database.execute(fmt::format("DROP VIEW IF EXISTS {}; {}", table.name, table.sql()));
+    // Another process may have added them while this one waited.
+    for (const results::Column* column : lacking())
+      database.execute(
+          fmt::format("ALTER TABLE {} ADD COLUMN {} {}", table.name, column->name, column->definition));
+    transaction.commit();
+  }
 }
 
 const fs::path& ResultsStore::file() const {
@@ -125,32 +178,39 @@ bool ResultsStore::contains(const std::string& key) const {
   return statement.bind(key).step();
 }
 
-/// Inside a transaction.
-bool ResultsStore::State::add(const RunRecord& run, const std::vector<StoredImage>& images) {
-  if (run.complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(run.key);
+bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
+  const std::string key = run.identity.key();
+  if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(key);
   // A run keeps its number when its times are there.
   Statement untimed(database, "SELECT id FROM runs WHERE key = ? AND NOT complete");
-  const bool known = untimed.bind(run.key).step();
+  const bool known = untimed.bind(key).step();
   const std::int64_t number = known ? untimed.integer(0) : 0;
   untimed.reset();
   if (known) Statement(database, "DELETE FROM runs WHERE id = ?").run(number);
   // A failure may have had causes that are gone; it gives way to a result.
-  if (!run.failed && run.complete)
-    Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(run.key);
-  Statement(database, "INSERT OR IGNORE INTO runs (id, key, complete, record) VALUES (nullif(?, 0), ?, ?, ?)")
-      .run(number, run.key, run.complete, run.json);
+  if (run.point.failure.empty() && complete)
+    Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(key);
+  Statement row(database, results::insertSql<StoredRun>("runs", "id, key, complete"));
+  row.bindJson(1, known ? results::Json(number) : results::Json());
+  row.bindOne(2, key);
+  row.bindOne(3, complete);
+  results::bindRecord(row, 4, run);
+  row.run();
   if (database.changes() == 0) return false;
   const std::int64_t id = database.lastRow();
+  Statement metric(database, results::insertSql<NamedMetric>("metrics", "run, position, name"));
+  for (std::size_t position = 0; position < run.point.errors.size(); ++position)
+    for (const NamedMetric& one : metricsOf(run.point.errors[position])) {
+      metric.bind(id, position, one.name);
+      results::bindRecord(metric, 4, one);
+      metric.run();
+    }
   Statement insert(database, "INSERT INTO images VALUES (?,?,?,?,?,?,?)");
   int position = 0;
   for (const StoredImage& image : images)
     insert.run(id, position++, image.output, image.component, image.reference, image.flip,
                results::Blob{image.png});
   return true;
-}
-
-bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
-  return add({run.identity.key(), results::recordText(run), !run.point.failure.empty(), complete}, images);
 }
 
 bool ResultsStore::add(const StoredRun& run, const std::vector<StoredImage>& images) {
@@ -179,9 +239,9 @@ ResultsStore::Count ResultsStore::count() const {
 }
 
 std::optional<StoredRun> ResultsStore::State::find(const std::string& key, bool complete) const {
-  Statement row(database, "SELECT id, record FROM runs WHERE key = ? AND complete = ?");
-  if (!row.bind(key, complete).step()) return std::nullopt;
-  return runFrom(row.integer(0), row.text(1));
+  RunReader reader(database, "key = ? AND complete = ?");
+  reader.rows.bind(key, complete);
+  return reader.next();
 }
 
 std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
@@ -190,10 +250,14 @@ std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
 
 std::vector<StoredRun> ResultsStore::State::runs(const RunFilter& filter, bool complete) const {
   std::vector<StoredRun> result;
-  Statement row(database, "SELECT id, record FROM runs WHERE complete = ? ORDER BY id");
-  for (row.bind(complete); row.step();)
-    if (StoredRun run = runFrom(row.integer(0), row.text(1)); matches(filter, run))
-      result.push_back(std::move(run));
+  // Rows that cannot match are not read.
+  RunReader reader(database,
+                   "complete = ? AND (scene_name = ? OR instr(scene, ?)) AND (pipeline_name = ? OR "
+                   "instr(pipeline, ?)) AND instr(device, ?) AND created >= ? ORDER BY id");
+  reader.rows.bind(complete, filter.scene, filter.scene, filter.pipeline, filter.pipeline, filter.device,
+                   filter.since);
+  while (std::optional<StoredRun> run = reader.next())
+    if (matches(filter, *run)) result.push_back(std::move(*run));
   return result;
 }
 
@@ -234,36 +298,34 @@ MergeCount ResultsStore::merge(const ResultsStore& other, const std::vector<std:
 MergeCount ResultsStore::merge(const ResultsStore& other,
                                const std::function<bool(const std::string&)>& isWanted) {
   // The other store is read before this one is locked.
-  std::vector<State::RunRecord> theirs;
-  Statement row(other.state_->database,
-                "SELECT key, record, failure <> '' FROM runs WHERE complete ORDER BY id");
-  while (row.step())
-    if (isWanted(row.text(0))) theirs.push_back({row.text(0), row.text(1), row.integer(2) != 0});
-  const std::vector<results::Record> cells = other.state_->records("stress_cells"),
-                                     peakRates = other.state_->records("peak_rates");
+  std::vector<StoredRun> theirs;
+  Statement here(state_->database, "SELECT 1 FROM runs WHERE key = ? AND complete AND failure = ''");
+  Statement keys(other.state_->database, "SELECT key FROM runs WHERE complete ORDER BY id");
+  RunReader reader(other.state_->database, "key = ? AND complete");
+  while (keys.step())
+    if (const std::string key = keys.text(0); isWanted(key) && !here.bind(key).step()) {
+      reader.rows.bind(key);
+      theirs.push_back(*reader.next());
+    }
+  here.reset();
+  const std::vector<StressCell> cells = other.stressCells();
+  const std::vector<PeakRate> peakRates = other.peakRates();
   const auto controls = other.state_->controls();
   Transaction transaction(state_->database);
   MergeCount count;
-  for (const State::RunRecord& run : theirs) count.runs += state_->add(run, other.images(run.key)) ? 1 : 0;
-  count.cells = state_->putNewer("stress_cells", cells);
-  count.peakRates = state_->putNewer("peak_rates", peakRates);
+  for (const StoredRun& run : theirs)
+    count.runs += state_->add(run, other.images(run.identity.key()), /*complete=*/true) ? 1 : 0;
+  count.cells = state_->put("stress_cells", cells, /*olderAlone=*/true);
+  count.peakRates = state_->put("peak_rates", peakRates, /*olderAlone=*/true);
   for (const auto& [key, control] : controls) state_->add(key, control);
   transaction.commit();
   return count;
 }
 
 MergeCount ResultsStore::import(const fs::path& file) {
-  const results::EarlierStore earlier(file);
-  Transaction transaction(state_->database);
-  MergeCount count;
-  for (const results::EarlierStore::Run& run : earlier.runs()) {
-    count.runs += state_->add(run.run, run.images, /*complete=*/true) ? 1 : 0;
-    for (const results::Control& control : run.controls) state_->add(run.run.identity.key(), control);
-  }
-  count.cells = state_->putNewer("stress_cells", results::records(earlier.cells()));
-  count.peakRates = state_->putNewer("peak_rates", results::records(earlier.peakRates()));
-  transaction.commit();
-  return count;
+  const ResultsStore earlier(std::make_unique<State>(file, Mode::read));
+  results::showEarlierStore(earlier.state_->database);
+  return merge(earlier);
 }
 
 std::string ResultsStore::describe() {

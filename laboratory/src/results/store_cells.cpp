@@ -5,13 +5,11 @@
 
 #include "lumivox/base/hash.h"
 #include "lumivox/results/store.h"
-#include "results/database.h"
-#include "results/field_json.h"
+#include "results/record_rows.h"
 #include "results/store_state.h"
 
 namespace lumivox {
 
-using results::Record;
 using results::Statement;
 using results::Transaction;
 
@@ -21,25 +19,19 @@ bool namesFile(const std::string& wanted, const std::string& file) {
   return wanted == file || std::filesystem::path(file).stem() == wanted;
 }
 
-std::vector<Record> records(const std::vector<StressCell>& cells) {
-  std::vector<Record> records;
-  for (const StressCell& cell : cells) records.push_back({cell.key(), cell.created, recordText(cell)});
-  return records;
-}
-
-std::vector<Record> records(const std::vector<PeakRate>& peakRates) {
-  std::vector<Record> records;
-  for (const PeakRate& rate : peakRates) {
-    Hasher hasher;
-    hasher.add(rate.device).add(rate.driver).add(rate.shaderInput).add(rate.host).add(rate.name);
-    records.push_back({hasher.finish().text(), rate.created, recordText(rate)});
-  }
-  return records;
-}
-
 }  // namespace results
 
 namespace {
+
+std::string keyOf(const StressCell& cell) {
+  return cell.key();
+}
+
+std::string keyOf(const PeakRate& rate) {
+  Hasher hasher;
+  hasher.add(rate.device).add(rate.driver).add(rate.shaderInput).add(rate.host).add(rate.name);
+  return hasher.finish().text();
+}
 
 bool matches(const CellFilter& filter, const StressCell& cell) {
   const auto same = [](const std::string& wanted, const std::string& found) {
@@ -60,43 +52,41 @@ bool CellFilter::everything() const {
          since.empty() && !outcome && ids.empty();
 }
 
-void ResultsStore::State::put(const char* table, const std::vector<Record>& records) {
-  Statement remove(database, fmt::format("DELETE FROM {} WHERE key = ?", table).c_str());
-  Statement insert(database, fmt::format("INSERT INTO {} (key, record) VALUES (?, ?)", table).c_str());
-  for (const Record& record : records) {
-    remove.run(record.key);
-    insert.run(record.key, record.json);
+template <class T>
+std::size_t ResultsStore::State::put(const char* table, const std::vector<T>& records, bool olderAlone) {
+  Statement newer(database, fmt::format("SELECT 1 FROM {} WHERE key = ? AND created >= ?", table));
+  Statement remove(database, fmt::format("DELETE FROM {} WHERE key = ?", table));
+  Statement insert(database, results::insertSql<T>(table, "key"));
+  std::size_t count = 0;
+  for (const T& record : records) {
+    const std::string key = keyOf(record);
+    const bool stays = olderAlone && newer.bind(key, record.created).step();
+    newer.reset();
+    if (stays) continue;
+    remove.run(key);
+    insert.bindOne(1, key);
+    results::bindRecord(insert, 2, record);
+    insert.run();
+    ++count;
   }
+  return count;
 }
 
-std::size_t ResultsStore::State::putNewer(const char* table, const std::vector<Record>& records) {
-  Statement mine(database, fmt::format("SELECT created FROM {} WHERE key = ?", table).c_str());
-  std::vector<Record> newer;
-  for (const Record& record : records)
-    if (!mine.bind(record.key).step() || mine.text(0) < record.created) newer.push_back(record);
-  mine.reset();
-  put(table, newer);
-  return newer.size();
-}
-
-std::vector<Record> ResultsStore::State::records(const char* table) const {
-  std::vector<Record> records;
-  Statement row(database, fmt::format("SELECT key, created, record FROM {} ORDER BY id", table).c_str());
-  while (row.step()) records.push_back({row.text(0), row.text(1), row.text(2)});
-  return records;
-}
+template std::size_t ResultsStore::State::put(const char*, const std::vector<StressCell>&, bool);
+template std::size_t ResultsStore::State::put(const char*, const std::vector<PeakRate>&, bool);
 
 void ResultsStore::add(const std::vector<StressCell>& cells) {
   Transaction transaction(state_->database);
-  state_->put("stress_cells", results::records(cells));
+  state_->put("stress_cells", cells, /*olderAlone=*/false);
   transaction.commit();
 }
 
 std::vector<StressCell> ResultsStore::stressCells(const CellFilter& filter) const {
   std::vector<StressCell> cells;
-  Statement row(state_->database, "SELECT id, record FROM stress_cells ORDER BY id");
+  Statement row(state_->database, fmt::format("SELECT id, {} FROM stress_cells ORDER BY id",
+                                              results::columnNames<StressCell>()));
   while (row.step()) {
-    auto cell = results::recordFrom<StressCell>(row.text(1));
+    auto cell = results::recordAt<StressCell>(row, 1);
     cell.id = row.integer(0);
     if (matches(filter, cell)) cells.push_back(std::move(cell));
   }
@@ -114,26 +104,24 @@ std::size_t ResultsStore::removeCells(const CellFilter& filter) {
 
 void ResultsStore::add(const std::vector<PeakRate>& peakRates) {
   Transaction transaction(state_->database);
-  state_->put("peak_rates", results::records(peakRates));
+  state_->put("peak_rates", peakRates, /*olderAlone=*/false);
   transaction.commit();
 }
 
 std::vector<PeakRate> ResultsStore::peakRates() const {
   std::vector<PeakRate> peakRates;
-  Statement row(state_->database, "SELECT record FROM peak_rates ORDER BY device, name, id");
-  while (row.step()) peakRates.push_back(results::recordFrom<PeakRate>(row.text(0)));
+  Statement row(state_->database, fmt::format("SELECT {} FROM peak_rates ORDER BY device, name, id",
+                                              results::columnNames<PeakRate>()));
+  while (row.step()) peakRates.push_back(results::recordAt<PeakRate>(row, 0));
   return peakRates;
 }
 
 std::vector<PeakRate> ResultsStore::peakRates(const std::string& device, const std::string& driver,
                                               const std::string& shaderInput, const std::string& host) const {
   std::vector<PeakRate> result = peakRates();
-  result.erase(std::remove_if(result.begin(), result.end(),
-                              [&](const PeakRate& one) {
-                                return one.device != device || one.driver != driver ||
-                                       one.shaderInput != shaderInput || one.host != host;
-                              }),
-               result.end());
+  std::erase_if(result, [&](const PeakRate& one) {
+    return one.device != device || one.driver != driver || one.shaderInput != shaderInput || one.host != host;
+  });
   return result;
 }
 

@@ -120,10 +120,9 @@ std::vector<RepeatedControl> ResultsStore::controls(const RunIdentity& where) co
   std::vector<RepeatedControl> controls;
   Statement row(
       state_->database,
-      "SELECT c.run, c.created, c.what, json_extract(r.record, '$.' || c.what || '.median_ms'), "
-      "json_extract(r.record, '$.' || c.what || '.lower_quartile_ms'), json_extract(r.record, '$.' || c.what || "
-      "'.upper_quartile_ms'), json_extract(r.record, '$.' || c.what || '.repeats'), c.median_ms, "
-      "c.lower_quartile_ms, c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = c.run WHERE "
+      "SELECT c.run, c.created, c.what, t.median_ms, t.lower_quartile_ms, t.upper_quartile_ms, t.repeats, "
+      "c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = "
+      "c.run LEFT JOIN timings t ON t.run = c.run AND t.what = c.what AND t.pass = '' WHERE "
       "r.device = ? AND r.driver = ? AND r.shader_input = ? AND r.host = ? ORDER BY c.created DESC, c.run, c.what");
   std::int64_t run = -1;
   for (row.bind(where.device, where.driver, where.shaderInput, where.host); row.step();) {

@@ -5,24 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "results/fields.h"
+#include "results/record_rows.h"
 
 namespace lumivox::results {
 namespace {
 
-struct Column {
-  std::string name, definition;  ///< of a table: type and constraints; of a view: the expression
-  std::string about{};           ///< empty: the sentence of the next column is about this one too
-};
 using Columns = std::vector<Column>;
-
-struct Table {
-  const char* name;
-  const char* about;
-  Columns columns;
-  std::string rest;               ///< of a table: further constraints; of a view: what it is read from
-  const char* options = nullptr;  ///< of a table; null: it is a view
-};
 
 /// Of a text "name definition -- about | name definition".
 Columns columns(std::string_view text) {
@@ -40,58 +28,86 @@ Columns columns(std::string_view text) {
   return result;
 }
 
-/// Adds the fields of T that are one value each, from the JSON object at `path` of `json`. Lists are views of
-/// their own.
+/// A column of a table for each of a record, by default what a record begins with.
 template <class T>
-void addFields(Columns& columns, const std::string& json, const std::string& path, const char* suffix = "") {
-  const bool isTable = json == "record";
+void addColumns(Columns& columns) {
+  T record;
+  eachColumn(record, [&]<class M>(const std::string& name, const char* about, M& member) {
+    const Json value = jsonOf(member);
+    const std::string standard = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string definition = std::floating_point<M>    ? "REAL DEFAULT " + standard
+                                   : std::is_arithmetic_v<M> ? "INTEGER NOT NULL DEFAULT " + standard
+                                   : IsOptional<M>           ? "TEXT"
+                                                             : "TEXT NOT NULL DEFAULT '" + standard + "'";
+    columns.push_back({name, definition, about == nullptr ? "" : about});
+  });
+}
+
+/// A column of a view for each single value of a record, from the JSON object `json`.
+template <class T>
+void addFields(Columns& columns, const std::string& json) {
   T record;
   fields(record, [&]<class M>(const Field& field, M&&) {
     using Member = std::remove_cvref_t<M>;
-    [[maybe_unused]] const auto add = [&](const std::string& name, const std::string& at, const char* about) {
-      const char* type = std::floating_point<Member>    ? "REAL"
-                         : std::is_arithmetic_v<Member> ? "INTEGER"
-                                                        : "TEXT";
-      const std::string sql = fmt::format("json_extract({}, '{}.{}')", json, path, at);
-      columns.push_back({name, isTable ? fmt::format("{} GENERATED ALWAYS AS ({}) VIRTUAL", type, sql) : sql,
-                         about == nullptr ? "" : about});
+    const auto add = [&](const std::string& name, const std::string& at, const char* about) {
+      columns.push_back(
+          {name, fmt::format("json_extract({}, '$.{}')", json, at), about == nullptr ? "" : about});
     };
-    if constexpr (std::same_as<Member, RunIdentity> || std::same_as<Member, RayHoles>) {
-      addFields<Member>(columns, json, path + "." + field.name);
-    } else if constexpr (std::same_as<Member, glm::ivec3>) {
+    if constexpr (std::same_as<Member, glm::ivec3>) {
       add("width", field.name + std::string("[0]"), nullptr);
       add("height", field.name + std::string("[1]"), nullptr);
       add("depth", field.name + std::string("[2]"), field.about);
-    } else if constexpr (std::same_as<Member, double>) {
-      add(field.column + std::string(suffix), field.name + std::string(suffix), field.about);
-    } else if constexpr (std::is_arithmetic_v<Member> || std::same_as<Member, std::string> ||
-                         std::same_as<Member, StressOutcome> || std::same_as<Member, Against<bool>>) {
+    } else if constexpr (!std::same_as<Member, Metrics<T>>) {
       add(field.column, field.name, field.about);
     }
   });
 }
 
-/// The columns of `text` and the fields of T.
+/// The columns of `text`, and those of a record in a table or in the JSON of a view.
 template <class T>
-Columns with(std::string_view text, const char* json, const char* path = "$", const char* suffix = "") {
+Columns with(std::string_view text, const char* json = nullptr) {
   Columns result = columns(text);
-  addFields<T>(result, json, path, suffix);
+  if (json == nullptr)
+    addColumns<T>(result);
+  else
+    addFields<T>(result, json);
   return result;
 }
 
-/// A table of records with the JSON that the command writes, too.
 template <class T>
-Table records(const char* name, const char* about, const std::string& key, const char* command) {
-  Columns result = with<T>("id INTEGER PRIMARY KEY | key TEXT NOT NULL UNIQUE -- " + key, "record");
-  result.push_back({"record", "TEXT NOT NULL", fmt::format("all of it as JSON, as `{}` writes it", command)});
-  return {name, about, result, "", ""};
+Table records(const char* name, const char* about, const std::string& key) {
+  return {name, about, with<T>("id INTEGER PRIMARY KEY | key TEXT NOT NULL UNIQUE -- " + key), "", "STRICT"};
 }
 
 /// A view of what each run has a list of.
 Table ofRuns(const char* name, const char* about, Columns columns, const char* list,
              const std::string& more = {}) {
-  return {name, about, std::move(columns),
-          fmt::format("runs r, json_each(r.record, '$.{}') l{}", list, more)};
+  return {name, about, std::move(columns), fmt::format("runs r, json_each(r.{}) l{}", list, more)};
+}
+
+/// The rows of view `timings`: times of whole frames are columns of runs, those of passes JSON.
+std::string allTimings() {
+  std::string sql;
+  const auto add = [&](const std::string& id, const std::string& what, const std::string& pass,
+                       const std::string& number, const std::string& from) {
+    sql += sql.empty() ? "(" : "\nUNION ALL ";
+    sql += fmt::format("SELECT {} AS run, '{}' AS what, {} AS pass", id, what, pass);
+    TimingStatistics time;
+    fields(time, [&](const Field& field, auto&&) {
+      sql += fmt::format(", {} AS {}", fmt::format(fmt::runtime(number), field.name), field.name);
+    });
+    sql += fmt::format(" FROM {} WHERE {} > 0", from, fmt::format(fmt::runtime(number), "repeats"));
+  };
+  StoredRun run;
+  fields(run, [&]<class M>(const Field& field, M&&) {
+    const std::string name = field.name;
+    if constexpr (std::same_as<std::remove_cvref_t<M>, TimingStatistics>)
+      add("id", name.substr(0, name.rfind("_ms")), "''", name + "_{}", "runs");
+  });
+  for (const std::string where : {"device", "host"})
+    add("r.id", "pass_" + where, "json_extract(l.value, '$.name')",
+        "json_extract(l.value, '$." + where + "_ms.{}')", "runs r, json_each(r.passes) l");
+  return sql + ")";
 }
 
 const std::string kOfRun = "run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE";
@@ -103,11 +119,9 @@ std::vector<Table> tables() {
       records<StoredRun>(
           "runs", "one row for each measured point",
           "number of the run in this store; what makes it unique, see above | complete INTEGER NOT NULL -- 0 where an unfinished batch has "
-          "left errors, images and work of a point, but no times; such a run is no result",
-          "results export --format json"),
+          "left errors, images and work of a point, but no times; such a run is no result"),
       ofRuns("parameters", "all parameters of the pipeline, as `--set` reads them",
-             columns("run r.id | name l.key | value l.value -- of which run; as text"),
-             "identity.parameters"),
+             columns("run r.id | name l.key | value l.value -- of which run; as text"), "parameters"),
       {"provenance", "what a run was made from",
        columns(
            "run id | kind 'scene' | name scene | hash scene_hash -- kind: scene, pipeline, technique (library+shaders), framework; "
@@ -116,27 +130,26 @@ std::vector<Table> tables() {
        "runs UNION ALL SELECT id, 'pipeline', pipeline, pipeline_hash FROM runs UNION ALL SELECT id, 'framework', 'lumivox', framework FROM "
        "runs UNION ALL SELECT id, 'flicker', flicker_pairs || ' pairs', '' FROM runs WHERE flicker_pairs > 0 UNION ALL SELECT id, "
        "'not_counted', not_counted, '' FROM runs WHERE not_counted <> '' UNION ALL SELECT id, 'display', display, '' FROM runs WHERE display "
-       "<> '' UNION ALL SELECT r.id, 'kept', k.value, '' FROM runs r, json_each(r.record, '$.identity.kept') k UNION ALL SELECT r.id, "
-       "'technique', t.key, t.value FROM runs r, json_each(r.record, '$.identity.techniques') t"},
+       "<> '' UNION ALL SELECT r.id, 'kept', k.value, '' FROM runs r, json_each(r.kept) k UNION ALL SELECT r.id, 'technique', t.key, "
+       "t.value FROM runs r, json_each(r.techniques) t"},
       {"timings", "times of frames and passes, ms",
-       with<TimingStatistics>(
-           "run r.id | what CASE WHEN t.key IN ('device', 'host') THEN 'pass_' || t.key ELSE t.key END | pass "
-           "coalesce(json_extract(r.record, t.path || '.name'), '') -- what: frame (all kept passes), next_frame (1/60 s later), still_frame "
-           "(nothing moves), moved_frame (camera and lights have moved), pass_device, pass_host",
-           "t.value", "$", "_ms"),
-       "runs r, json_tree(r.record) t WHERE t.type = 'object' AND t.key IN ('frame', 'next_frame', 'still_frame', 'moved_frame', 'device', "
-       "'host') AND json_extract(t.value, '$.repeats') > 0"},
+       columns(
+           "run run | what what | pass pass -- what: frame (all kept passes), next_frame (1/60 s later), still_frame (nothing moves), "
+           "moved_frame (camera and lights have moved), pass_device, pass_host | median_ms median | lower_quartile_ms lower_quartile | "
+           "upper_quartile_ms upper_quartile | smallest_ms smallest | largest_ms largest | repeats repeats -- median of the repeats, its "
+           "quartiles, the smallest and the largest, and how many repeats"),
+       allTimings()},
       ofRuns(
           "passes", "in the order in which they ran",
           columns(
               "run r.id | position l.key | name json_extract(l.value, '$.name') -- of which run; from 0 on"),
-          "passes", " WHERE json_extract(l.value, '$.ran') IS NULL"),
+          "passes", " WHERE json_extract(l.value, '$.ran')"),
       {"resources", "memory",
        columns(
            "run id | what 'peak' | pass '' | bytes peak_bytes -- what: peak (of the whole frame, the scene included, whatever else is on "
            "the device), pass (taken by one pass)"),
-       "runs UNION ALL SELECT r.id, 'pass', json_extract(p.value, '$.name'), json_extract(p.value, '$.bytes') FROM runs r, "
-       "json_each(r.record, '$.passes') p WHERE json_extract(p.value, '$.bytes') IS NOT NULL"},
+       "runs UNION ALL SELECT r.id, 'pass', json_extract(l.value, '$.name'), json_extract(l.value, '$.bytes') FROM runs r, "
+       "json_each(r.passes) l WHERE json_extract(l.value, '$.bytes') IS NOT NULL"},
       ofRuns(
           "work",
           "what a pass does in a frame in which all passes run, by resource of the device (docs/commands.md, `lumivox device`); none where "
@@ -147,23 +160,18 @@ std::vector<Table> tables() {
           "passes", ", json_each(l.value, '$.work') w"),
       ofRuns("errors", "errors of outputs", with<ComponentError>("run r.id | position l.key", "l.value"),
              "errors"),
-      ofRuns(
-          "metrics", "the numbers of each error",
-          with<NamedMetric>(
-              "run r.id | position l.key | name m.key -- of that error: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, "
-              "flip, flip_ldr, rms_bias, rms_noise, flicker, exposure_ev (at which SSIM and LDR-FLIP were taken), noise_floor, "
-              "non_finite_image, non_finite_reference (docs/metrics.md)",
-              "m.value"),
-          "errors", ", json_each(l.value, '$.metrics') m"),
+      {"metrics", "the numbers of each error",
+       with<NamedMetric>(
+           kOfRun +
+           " | position INTEGER NOT NULL | name TEXT NOT NULL -- of that error: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, "
+           "flip, flip_ldr, rms_bias, rms_noise, flicker, exposure_ev (at which SSIM and LDR-FLIP were taken), noise_floor, "
+           "non_finite_image, non_finite_reference (docs/metrics.md)"),
+       "PRIMARY KEY (run, position, name)", "STRICT, WITHOUT ROWID"},
       {"voxels",
        "one row for each run whose indirect light is gathered from voxels ([what they are](metrics.md#voxels-beside-errors))",
-       with<GatheredVoxels>(
-           "run r.id | recall json_extract(r.record, '$.voxels.recall') | precision json_extract(r.record, "
-           "'$.voxels.precision') -- of which run; as in [the metrics](metrics.md#voxels)",
-           "r.record", "$.voxels"),
-       "runs r WHERE json_type(r.record, '$.voxels') = 'object'"},
+       with<GatheredVoxels>("run id", "voxels"), "runs WHERE voxels IS NOT NULL"},
       ofRuns("health", "NaN, infinite and negative values",
-             columns("run r.id | position l.key | finding l.value -- one of a run"), "health"),
+             columns("run r.id | position l.key | finding l.value -- one of a run"), "health_findings"),
       ofRuns("notes", "what passes measured about themselves",
              columns("run r.id | position l.key | note l.value -- one of a run"), "notes"),
       {"images", "of an unfinished report alone: images of a run",
@@ -195,34 +203,36 @@ std::vector<Table> tables() {
        "PRIMARY KEY (report, key)", "STRICT, WITHOUT ROWID"},
       records<StressCell>(
           "stress_cells", "cells of the [stress battery](stress.md)",
-          "number of the cell; hash of all that it depends on: a newer cell with the same key takes the place of the older",
-          "results export --stress --format json"),
+          "number of the cell; hash of all that it depends on: a newer cell with the same key takes the place of the older"),
       {"stress_provenance", "library+shaders of the techniques that the pipeline names",
        columns("cell c.id | technique t.key | hash t.value -- of which cell"),
-       "stress_cells c, json_each(c.record, '$.techniques') t"},
+       "stress_cells c, json_each(c.techniques) t"},
       records<PeakRate>(
           "peak_rates", "peak rates of devices",
-          "number; hash of device, driver, shaders, host and name: a newer rate takes the place of the older",
-          "device --json")};
-}
-
-std::string sqlOf(const Table& table) {
-  const bool isView = table.options == nullptr;
-  std::string text;
-  for (const Column& column : table.columns)
-    text += (text.empty() ? "  " : ",\n  ") +
-            (isView ? column.definition + " AS " + column.name : column.name + " " + column.definition);
-  if (isView) return fmt::format("CREATE VIEW {} AS SELECT\n{}\nFROM {};\n", table.name, text, table.rest);
-  const char* comma = table.rest.empty() ? "" : ",\n  ";
-  return fmt::format("CREATE TABLE {} (\n{}{}{}\n) {};\n", table.name, text, comma, table.rest,
-                     table.options);
+          "number; hash of device, driver, shaders, host and name: a newer rate takes the place of the older")};
 }
 
 }  // namespace
 
+std::string Table::sql() const {
+  const bool isView = options == nullptr;
+  std::string text;
+  for (const Column& column : columns)
+    text += (text.empty() ? "  " : ",\n  ") +
+            (isView ? column.definition + " AS " + column.name : column.name + " " + column.definition);
+  if (isView) return fmt::format("CREATE VIEW {} AS SELECT\n{}\nFROM {}", name, text, rest);
+  return fmt::format("CREATE TABLE {} (\n{}{}{}\n) {}", name, text, rest.empty() ? "" : ",\n  ", rest,
+                     options);
+}
+
+const std::vector<Table>& storeTables() {
+  static const std::vector<Table> all = tables();
+  return all;
+}
+
 std::string schemaSql() {
   std::string sql;
-  for (const Table& table : tables()) sql += sqlOf(table);
+  for (const Table& table : storeTables()) sql += table.sql() + ";\n";
   return sql +
          "CREATE INDEX runs_by_scene ON runs (scene_name, pipeline_name);\n"
          "CREATE INDEX wanted_by_key ON wanted (key);\n";
@@ -230,7 +240,7 @@ std::string schemaSql() {
 
 std::string schemaMarkdown() {
   std::string text;
-  for (const Table& table : tables()) {
+  for (const Table& table : storeTables()) {
     text += fmt::format("- `{}`: {}.\n", table.name, table.about);
     std::string names;
     for (const Column& column : table.columns) {

@@ -3,15 +3,30 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lumivox::results {
 
 /// PRAGMA user_version. A new field of a record needs no new one.
-inline constexpr std::int64_t kSchemaVersion = 9;
-/// The last schema with a column for each field, see earlier_store.h.
-inline constexpr std::int64_t kLastEarlierSchema = 8;
+inline constexpr std::int64_t kSchemaVersion = 10;
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
+struct Column {
+  std::string name, definition;  ///< of a table: type and constraints; of a view: the expression
+  std::string about{};           ///< empty: the sentence of the next column is about this one too
+};
+
+struct Table {
+  const char* name;
+  const char* about;
+  std::vector<Column> columns;
+  std::string rest;               ///< of a table: further constraints; of a view: what it is read from
+  const char* options = nullptr;  ///< of a table; null: it is a view
+  std::string sql() const;        ///< CREATE
+};
+const std::vector<Table>& storeTables();
+
+/// All of them, with their indices.
 std::string schemaSql();
 /// A list in Markdown: each table and view with its columns.
 std::string schemaMarkdown();

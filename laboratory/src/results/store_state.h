@@ -23,13 +23,6 @@ struct Control {
   TimingStatistics time;
 };
 
-/// A row of a table of records. Of two with one key the newer one stays.
-struct Record {
-  std::string key, created, json;
-};
-std::vector<Record> records(const std::vector<StressCell>& cells);
-std::vector<Record> records(const std::vector<PeakRate>& peakRates);
-
 }  // namespace lumivox::results
 
 namespace lumivox {
@@ -41,22 +34,18 @@ struct ResultsStore::State {
   State(const std::filesystem::path& file, Mode openMode)
       : database(file, openMode == Mode::write), mode(openMode) {}
   void requireSchema();
+  void addNewFields();
 
-  struct RunRecord {
-    std::string key, json;
-    bool failed = false, complete = true;
-  };
   // These are called inside a transaction.
-  bool add(const RunRecord& run, const std::vector<StoredImage>& images);
   bool add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete);
   void add(const std::string& key,
            const results::Control& control);  ///< of the run with this key, if it is here
-  void put(const char* table, const std::vector<results::Record>& records);
-  std::size_t putNewer(const char* table, const std::vector<results::Record>& records);
+  /// Those that are older, or all, give way to records with the same keys. How many were put.
+  template <class T>
+  std::size_t put(const char* table, const std::vector<T>& records, bool olderAlone);
 
   std::optional<StoredRun> find(const std::string& key, bool complete) const;
   std::vector<StoredRun> runs(const RunFilter& filter, bool complete) const;
-  std::vector<results::Record> records(const char* table) const;
   /// With the keys of their runs.
   std::vector<std::pair<std::string, results::Control>> controls() const;
 };

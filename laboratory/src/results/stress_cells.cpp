@@ -51,13 +51,12 @@ std::string stressCellJson(const StressCell& cell) {
 StressCell stressCellFrom(const std::string& json) {
   try {
     StressCell cell;
-    int count = 0;
-    results::fields(cell, [&](const results::Field&, auto&&) { ++count; });
-    results::JsonText text(json);
-    if (results::readFields(text, cell) != count) throw Error("it lacks fields");
-    text.end();
+    const Json parsed = Json::parse(json);
+    results::fields(cell, [&](const results::Field& field, auto&& member) {
+      results::read(parsed.at(field.name), member);
+    });
     return cell;
-  } catch (const Error& error) {
+  } catch (const Json::exception& error) {
     throw Error(
         fmt::format("'{}' is not a cell of the stress battery: {}", json.substr(0, 200), error.what()));
   }

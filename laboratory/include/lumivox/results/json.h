@@ -22,15 +22,11 @@ std::string textOf(const nlohmann::ordered_json& json, int indent);
 nlohmann::ordered_json toJson(const Measured& measured);
 nlohmann::ordered_json toJson(const TimingStatistics& statistics);
 nlohmann::ordered_json toJson(const ParameterValues& values);
-nlohmann::ordered_json toJson(const ComponentError& error);
-/// Null: there are none.
-nlohmann::ordered_json toJson(const std::optional<GatheredVoxels>& voxels);
-nlohmann::ordered_json toJson(const ReportPoint& point, bool isDefault);
-/// As the results store keeps them, each with its number and key in front.
+/// With number and key in front where it is in a store.
+nlohmann::ordered_json toJson(const StoredRun& run);
 nlohmann::ordered_json runsJson(const std::vector<StoredRun>& runs);
 nlohmann::ordered_json toJson(const PruningRecord& record);
 nlohmann::ordered_json toJson(const std::vector<PeakRate>& peakRates);
-nlohmann::ordered_json toJson(const VoxelizerRecord& record);
 nlohmann::ordered_json toJson(const std::vector<VoxelizerRecord>& records);
 nlohmann::ordered_json toJson(const StressCell& cell);
 /// All but its points, prunings and what is found from them.

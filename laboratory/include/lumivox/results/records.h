@@ -70,10 +70,6 @@ struct GatheredVoxels {
   RayHoles holes;
 };
 
-/// The numbers of them by name: recall, precision, axis_holes and oblique_holes (shares of the crossings of
-/// rays). NaN where there are none.
-std::vector<std::pair<std::string, double>> metricsOf(const std::optional<GatheredVoxels>& voxels);
-
 /// One sweep point: both error and time, in one record.
 struct ReportPoint {
   std::string scene, pipeline, sweep;  ///< scene and pipeline as given files; sweep empty: the default point

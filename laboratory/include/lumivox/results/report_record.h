@@ -96,7 +96,7 @@ struct ReportRecord {
 };
 
 std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene);
-/// The points of all scenes as runs that are in no store.
-std::vector<StoredRun> runsOf(const ReportRecord& report);
+/// The points of a scene as runs that are in no store.
+std::vector<StoredRun> runsOf(const ReportRecord& report, const SceneRecord& scene);
 
 }  // namespace lumivox

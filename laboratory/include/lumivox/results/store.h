@@ -1,5 +1,5 @@
-// The results store: every measured point with everything that it depends on, in one SQLite file: its key and
-// the record as JSON. The meaning of each column: docs/results.md.
+// The results store: every measured point with everything that it depends on, in one SQLite file. The
+// meaning of each column: docs/results.md.
 #pragma once
 
 #include <cstdint>
@@ -106,7 +106,7 @@ class ResultsStore {
   /// The same for the runs with these keys alone.
   MergeCount merge(const ResultsStore& other, const std::vector<std::string>& keys);
 
-  /// The same from a store that an earlier version wrote, with schema 1 to 8.
+  /// The same from a store that an earlier version wrote, with schema 1 to 9.
   MergeCount import(const std::filesystem::path& file);
 
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.
@@ -127,6 +127,7 @@ class ResultsStore {
  private:
   friend class results::UnfinishedStore;
   struct State;
+  explicit ResultsStore(std::unique_ptr<State> state);
   MergeCount merge(const ResultsStore& other, const std::function<bool(const std::string&)>& isWanted);
   std::unique_ptr<State> state_;
 };

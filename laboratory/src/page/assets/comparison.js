@@ -7,7 +7,6 @@ const comparisonOf = (function () {
           chart } = lumivox;
   const metrics = { flip: "FLIP", rmse: "RMSE", relative_mse: "relative MSE", percentile95: "95th percentile" };
   const units = { flip: "", rmse: "W/(sr m²)", relative_mse: "", percentile95: "W/(sr m²)" };
-  const members = { flip: "flip_hdr", rmse: "rmse", relative_mse: "relative_mse", percentile95: "percentile_95" };
   const against = { bias: "its own bounces", misses: "full transport" };
 
   // ---- charts
@@ -131,7 +130,7 @@ const comparisonOf = (function () {
 
   // ---- error against how well the voxels hold the surface
 
-  const shares = { recall: "recall", precision: "precision", axis_holes: "holes, rays along the axes", oblique_holes: "holes, oblique rays" };
+  const shares = { recall: "recall", precision: "precision", axis_share: "holes, rays along the axes", oblique_share: "holes, oblique rays" };
   const judgedVoxels = (scene, point) => {
     const { voxels } = scene.points[point.source];
     return voxels && isNumber(voxels.recall) ? voxels : null;
@@ -201,7 +200,7 @@ const comparisonOf = (function () {
           const voxels = judgedVoxels(scene, point), source = scene.points[point.source];
           return { pipeline: point.file, isDefault: source.default, kind: source.default ? "default" : "", cells: [
             named(point.file), differingParameters(shown(), point), lumivox.broken(voxels.output), voxels.resolution.join(" × "), voxels.occupied,
-            voxels.recall.toFixed(4), voxels.precision.toFixed(4), percent(voxels.axis_holes), percent(voxels.oblique_holes),
+            voxels.recall.toFixed(4), voxels.precision.toFixed(4), percent(voxels.axis_share), percent(voxels.oblique_share),
             sortedBy(point.error.value, measured(point.error))] };
         }))),
       missing];
@@ -282,14 +281,12 @@ const comparisonOf = (function () {
   }
 
   /** The error of a component at a point: against the reference that is wanted, or the only one. */
-  function errorOf(point, component, kind) {
+  function errorOf(point, component, against) {
     const own = point.errors.filter(error => error.component === component && (component !== "final" || error.output === "whole_image"));
-    return own.find(error => error.kind === kind) || own[0];
+    return own.find(error => error.against === against) || own[0];
   }
   function errorNumber(error, metric) {
-    if (!error) return { value: null, uncertainty: null };
-    const one = error[members[metric]];
-    return one !== null && typeof one === "object" ? one : { value: one, uncertainty: error[members[metric] + "_uncertainty"] };
+    return error ? error.metrics[metric] : { value: null, uncertainty: null };
   }
   const isWhole = comparison => comparison.component === "final" && comparison.against === "misses";
 
@@ -307,8 +304,8 @@ const comparisonOf = (function () {
       return h("span", { title: "by " + listed(by) }, "beaten");
     };
     const rows = points.map(point => {
-      const error = errorNumber(errorOf(point, comparison.component, comparison.against === "bias" ? "bias" : "miss"), metric);
-      const whole = errorNumber(errorOf(point, "final", "miss"), metric);
+      const error = errorNumber(errorOf(point, comparison.component, comparison.against), metric);
+      const whole = errorNumber(errorOf(point, "final", "misses"), metric);
       const pruning = scene.pruning.find(one => one.pipeline === point.pipeline), saves = pruning && pruning.first_frame_saves;
       const same = sameAs(point.pipeline);
       return { value: error.value, cells: [

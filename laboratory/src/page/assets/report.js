@@ -20,9 +20,9 @@
       !point.default && !(standard && standard.parameters[name] === value)));
     return h("span", { title: parametersText(point.parameters) }, parametersText(differing));
   }
-  function errorOf(point, component, kind) {
+  function errorOf(point, component, against) {
     const own = point.errors.filter(error => error.component === component && (component !== "final" || error.output === "whole_image"));
-    return own.find(error => error.kind === kind) || own[0];
+    return own.find(error => error.against === against) || own[0];
   }
 
   // ---- one screen for each scene
@@ -100,15 +100,14 @@
 
   function errors(scene) {
     const rows = scene.points.flatMap(point => point.errors.map(error => {
-      const oneReference = error.kind === "bias" && !point.errors.some(other => other.output === error.output && other.kind === "miss");
-      const of = one => sortedBy(one.value, measured(one));
-      const pair = name => of({ value: error[name], uncertainty: error[name + "_uncertainty"] });
+      const oneReference = error.against === "bias" && !point.errors.some(other => other.output === error.output && other.against === "misses");
+      const of = name => sortedBy(error.metrics[name].value, measured(error.metrics[name]));
       return rowOf(point, [
         named(point.pipeline), pointParameters(scene, point), broken(outputName(error.output)), broken(error.reference),
-        oneReference ? "error" : error.kind === "bias" ? "bias" : "misses", pair("flip_hdr"), of(error.rmse), number(error.ratio_to_nothing),
-        of(error.relative_mse), pair("percentile_95"), of(error.mean_ratio), of(error.mean_difference), pair("ssim"), pair("flip_ldr"),
-        number(error.reference_noise), error.deterministic ? "none" : error.seeds < 2 ? "one seed" : number(error.image_noise),
-        error.non_finite_image === 0 ? "0" : bad(error.non_finite_image)]);
+        oneReference ? "error" : error.against, of("flip"), of("rmse"), number(error.ratio_to_nothing),
+        of("relative_mse"), of("percentile95"), of("mean_ratio"), of("bias"), of("ssim"), of("flip_ldr"),
+        number(error.metrics.noise_floor.value), error.deterministic ? "none" : error.seeds < 2 ? "one seed" : number(error.noise_rmse),
+        error.metrics.non_finite_image.value === 0 ? "0" : bad(error.metrics.non_finite_image.value)]);
     }));
     return [
       caption("RMSE, mean difference and percentile in W/(sr m²). “Of left out” is the RMSE divided by that of a black image: below 1 the "
@@ -122,7 +121,7 @@
   }
 
   function noise(scene) {
-    const moves = scene.points.some(point => point.errors.some(error => error.flicker.value !== null));
+    const moves = scene.points.some(point => point.errors.some(error => error.metrics.flicker.value !== null));
     const of = one => sortedBy(one.value, measured(one));
     return [
       caption("What the RMSE is made of: the squares of bias, of the image's own noise and of the reference's noise add up to the mean square "
@@ -133,10 +132,10 @@
       table(columns("Pipeline", "Parameters", "Output", "Against",
                     ...["RMSE", "Bias", "Image's noise", "Reference's noise", ...(moves ? ["Flicker"] : []), "Seeds"].map(title => [title, "number"])),
         scene.points.flatMap(point => point.errors.map(error => rowOf(point, [
-          named(point.pipeline), pointParameters(scene, point), broken(outputName(error.output)), broken(error.reference), of(error.rmse),
-          error.seeds < 2 ? "one seed" : of(error.rms_bias),
-          error.deterministic ? "none" : error.seeds < 2 ? "one seed" : of(error.rms_noise), number(error.reference_noise),
-          ...(moves ? [of(error.flicker)] : []), error.seeds]))))];
+          named(point.pipeline), pointParameters(scene, point), broken(outputName(error.output)), broken(error.reference), of(error.metrics.rmse),
+          error.seeds < 2 ? "one seed" : of(error.metrics.rms_bias),
+          error.deterministic ? "none" : error.seeds < 2 ? "one seed" : of(error.metrics.rms_noise), number(error.metrics.noise_floor.value),
+          ...(moves ? [of(error.metrics.flicker)] : []), error.seeds]))))];
   }
 
   function slopes(scene) {
@@ -160,10 +159,10 @@
   /** Bars of the default points, divided by passes. Beyond eight passes the smallest are one part. */
   function passBars(scene, title, of, rest, text) {
     const points = scene.points.filter(point => point.default && !point.failure), totals = new Map();
-    for (const point of points) for (const pass of point.passes) totals.set(pass.pass, (totals.get(pass.pass) || 0) + of(pass));
+    for (const point of points) for (const pass of point.passes) totals.set(pass.name, (totals.get(pass.name) || 0) + of(pass));
     const largest = [...totals].filter(([, total]) => total > 0).sort((a, b) => b[1] - a[1]).map(([name]) => name).slice(0, 8);
     const parts = point => {
-      const sum = wanted => point.passes.filter(pass => wanted(pass.pass)).reduce((total, pass) => total + of(pass), 0);
+      const sum = wanted => point.passes.filter(pass => wanted(pass.name)).reduce((total, pass) => total + of(pass), 0);
       const own = largest.map((name, index) => ({ name, kind: "pass-" + index, value: sum(one => one === name) }));
       own.push({ name: "other passes", kind: "pass-other", value: sum(one => !largest.includes(one)) });
       if (rest) own.push({ name: "between passes", kind: "pass-between", value: rest(point) });
@@ -186,15 +185,15 @@
     .map(([name, count]) => thousands(count) + " " + words(name)).join("; ");
 
   function times(scene) {
-    const points = scene.points.filter(point => !point.failure), uncounted = points.filter(point => point.why_not_counted);
+    const points = scene.points.filter(point => !point.failure), uncounted = points.filter(point => point.not_counted);
     const of = (one, text) => sortedBy(one.value, measured(one, text)), timed = time => sortedBy(time && time.median, quartiles(time));
-    const saysLimits = points.some(point => point.passes.some(pass => pass.limit && pass.limit.at_least_ms));
+    const saysLimits = points.some(point => point.passes.some(pass => pass.at_least_ms));
     const passRows = points.flatMap(point => point.passes.map(pass => {
-      const ms = pass.device_ms ? pass.device_ms.median : 0, limit = pass.limit || {}, least = limit.at_least_ms;
-      return rowOf(point, [named(point.pipeline), pointParameters(scene, point), broken(pass.pass), timed(pass.device_ms),
-        point.frame_ms.median > 0 ? percent(ms / point.frame_ms.median) : "-", sortedBy(pass.bytes, bytes(pass.bytes)), limit.limited_by || "-",
-        least ? number(least[limit.limited_by]) : "-", least ? percent(limit.of_peak_rate) : "-",
-        least ? percent(Object.values(least).reduce((sum, one) => sum + one, 0) / ms) : "-", limit.work ? workText(limit.work) : ""]);
+      const ms = pass.device_ms ? pass.device_ms.median : 0, least = pass.at_least_ms;
+      return rowOf(point, [named(point.pipeline), pointParameters(scene, point), broken(pass.name), timed(pass.device_ms),
+        point.frame_ms.median > 0 ? percent(ms / point.frame_ms.median) : "-", sortedBy(pass.bytes, bytes(pass.bytes)), pass.limited_by || "-",
+        least ? number(least[pass.limited_by]) : "-", least ? percent(pass.of_peak_rate) : "-",
+        least ? percent(Object.values(least).reduce((sum, one) => sum + one, 0) / ms) : "-", pass.work ? workText(pass.work) : ""]);
     }));
     const seen = saysLimits ? undefined : "hidden";
     return [
@@ -214,7 +213,7 @@
       h("h4", null, "Passes"),
       caption("What a pass does was counted in a frame of its own; with the peak rates of this device it gives the time that the pass takes at "
         + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need."),
-      uncounted.length > 0 && h("p", null, "What the passes do was not counted: " + uncounted[0].why_not_counted + "."),
+      uncounted.length > 0 && h("p", null, "What the passes do was not counted: " + uncounted[0].not_counted + "."),
       table(columns("Pipeline", "Parameters", "Pass", ["Time, ms", "number"], ["Share of the frame", "number"], ["Memory", "number"],
                     ["Limited by", undefined, seen], ["At least, ms", "number", seen], ["Of the peak rate", "number", seen],
                     ["One after the other", "number", "hidden"], ["Does", "wide", "hidden"]), passRows)];
@@ -237,7 +236,7 @@
       const record = scene.pruning.find(one => one.pipeline === file);
       if (record)
         return [pipelineName(file), record.passes_kept + " of " + record.passes_total,
-                record.variants.needed + " / " + record.variants.compiled + " / " + record.variants.possible,
+                record.variants_needed + " / " + record.variants_compiled + " / " + record.variants_possible,
                 bytes(Math.max(0, record.bytes_keep_everything - record.bytes)) + " of " + bytes(record.bytes_keep_everything),
                 savedText(record.first_frame_saves), savedText(record.standing_saves), sameImage(record)];
       const unsuited = scene.unsuited.find(one => one.pipeline === file);
@@ -268,7 +267,7 @@
         h("h4", null, "Pass by pass"),
         table(columns("Pipeline", "Pass", ["As it runs, ms", "number"], ["Everything kept, ms", "number"], ["Saved, ms", "number"]),
           scene.pruning.flatMap(record => record.passes.map(pass => ({ pipeline: record.pipeline, cells: [
-            pipelineName(record.pipeline), broken(pass.pass), timesOf(pass.ms) ? quartiles(pass.ms) : "left out", quartiles(pass.ms_keep_everything),
+            pipelineName(record.pipeline), broken(pass.name), timesOf(pass.ms) ? quartiles(pass.ms) : "left out", quartiles(pass.ms_keep_everything),
             number((pass.ms_keep_everything ? pass.ms_keep_everything.median : 0) - (pass.ms ? pass.ms.median : 0))] }))))]];
   }
 
@@ -326,11 +325,11 @@
       const comparison = scene.comparisons.find(one => one.component === "final" && one.against === "misses" && one.metric === "flip");
       const front = new Set(comparison ? comparison.points.filter(point => point.beaten_by === null).map(point => point.source) : []);
       return scene.points.map((point, index) => {
-        const error = errorOf(point, "final", "miss"), of = one => sortedBy(one.value, measured(one));
+        const error = errorOf(point, "final", "misses"), of = one => sortedBy(one.value, measured(one));
         return rowOf(point, [
           sceneTitle(scene), named(point.pipeline), pointParameters(scene, point), sortedBy(point.frame_ms.median, quartiles(point.frame_ms)),
-          error ? of({ value: error.flip_hdr, uncertainty: error.flip_hdr_uncertainty }) : "-", error ? of(error.rmse) : "-",
-          error ? of(error.mean_ratio) : "-", front.has(index) ? "on the Pareto front" : "",
+          error ? of(error.metrics.flip) : "-", error ? of(error.metrics.rmse) : "-",
+          error ? of(error.metrics.mean_ratio) : "-", front.has(index) ? "on the Pareto front" : "",
           point.failure ? bad("failed") : point.health_findings.length === 0 ? good("good") : bad(plural(point.health_findings.length, "finding"))]);
       });
     });

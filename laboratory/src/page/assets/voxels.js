@@ -37,7 +37,7 @@ const voxelSection = (function () {
     for (const record of records) {
       if (kind !== "triangles" && record.subdivisions > 0) continue;
       if (kind === "triangles" && record.resolution !== first) continue;
-      if (kind !== "recall" && !record.is_default) continue;
+      if (kind !== "recall" && !record.default) continue;
       const key = kind === "recall" ? shortName(record.pipeline) : record.label;
       if (!series.has(key)) series.set(key, { record, label: key, data: [] });
       series.get(key).data.push({ x: axis.of(record), y: axis.value(record),
@@ -69,9 +69,9 @@ const voxelSection = (function () {
     const missing = records.filter(record => record.why_not);
     return [
       table(titles.map(([title, kind, hidden]) => ({ title, kind, hidden })), records.filter(record => !record.why_not).map(record => ({
-        kind: record.is_default ? "default" : "", pipeline: record.pipeline, isDefault: record.is_default, cells: [
+        kind: record.default ? "default" : "", pipeline: record.pipeline, isDefault: record.default, cells: [
           shortName(record.scene), record.label, record.resolution, record.triangles, sortedBy(record.frame_ms.median, quartiles(record.frame_ms)), record.occupied,
-          record.recall.toFixed(4), record.precision.toFixed(4), percent(record.holes.axis_share), percent(record.holes.oblique_share),
+          record.recall.toFixed(4), record.precision.toFixed(4), percent(record.axis_share), percent(record.oblique_share),
           record.fragments || "-", sortedBy(record.bytes, bytes(record.bytes)), record.fragments ? number(record.bytes_per_fragment) : "-",
           number(record.bytes_per_voxel), sortedBy(record.allocated_bytes, bytes(record.allocated_bytes))] }))),
       missing.length > 0 && longList("Not measured", missing.map(record =>
