@@ -135,7 +135,7 @@ inline std::map<Cell, std::array<glm::vec4, 8>> bricksOf(const RadianceOctree& o
                                                          int face = 0) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
   const gpu::TextureDescription& pool = octree.radiance->description();
-  std::map<Cell, std::array<glm::vec4, 27>> result;
+  std::map<Cell, std::array<glm::vec4, 8>> result;
   for (const auto& brick : OctreeBrickList::of(octree.tree, level).bricks) {
     auto& values = result[cellOf(brick.place)];
     for (int i = 0; i < VoxelOctree::kBrickVoxels; ++i) {
