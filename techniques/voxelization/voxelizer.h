@@ -71,9 +71,8 @@ class GridPass : public Pass {
 
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
-  Param<Around> around{
-      this, "around", Around::scene,
-      "scene: the grid contains the whole scene; camera: the grid follows the camera by whole voxels"};
+  Param<Around> around{this, "around", Around::scene,
+                       "scene: the grid contains the scene; camera: it follows the camera by whole voxels"};
   Param<float> extent{this, "extent",
                       0.0f, within(0.0f, 1e9f),
                       "m",  "side of the grid with 'around camera', where it is required; unused otherwise"};

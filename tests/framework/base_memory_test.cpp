@@ -52,8 +52,7 @@ const std::string kUnlimited = "9223372036854771712";
 
 }  // namespace
 
-TEST_CASE(
-    "without control groups what the machine has available is left, and without its word no limit is known") {
+TEST_CASE("without control groups the machine's available memory is left, or no limit known") {
   const Machine machine("", "");
   CHECK(machine.left() == 8192 * kMiB);
   const TemporaryDirectory nothing;

@@ -56,8 +56,7 @@ TEST_CASE("uniform numbers fill [0, 1) evenly") {
   CHECK(chiSquared < 43.8);
 }
 
-TEST_CASE(
-    "lattice points cover as much behind an upright or level edge as the square does, whatever their number") {
+TEST_CASE("lattice points cover as much behind an upright or level edge as the square") {
   for (const int count : {1, 2, 4, 5, 16, 36, 64, 100}) {
     INFO(count);
     const auto points = latticePoints(count);

@@ -15,11 +15,12 @@
 #include "gpu/requirements.h"
 #include "lumivox/shader/pack.h"
 #include "shader/arithmetic.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using namespace lumivox::gpu;
-using Catch::Matchers::Contains;
+using lumivox::test::Tells;
 
 TEST_CASE("a device that lacks something is told apart by the name of every limit that is too low") {
   const auto enough = [](const Requirement& one) { return one.least; };
@@ -36,7 +37,7 @@ TEST_CASE("a device that lacks something is told apart by the name of every limi
   CHECK_THAT(unmetRequirements([](const Requirement& one) {
                return std::string(one.name) == "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS" ? 0 : one.least;
              }),
-             Contains("GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS is 0"));
+             Tells("GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS", 0));
 }
 
 namespace {
@@ -283,7 +284,7 @@ TEST_CASE("every limit that is asked for at the start is in the documentation, w
     ++rows;
   CHECK(rows == requirements().size());
   for (const Requirement& one : requirements())
-    CHECK_THAT(text, Contains(fmt::format("| `{}` | {} | {} |", one.name, one.least, one.promised)));
+    CHECK_THAT(text, Tells(fmt::format("| `{}` | {} | {} |", one.name, one.least, one.promised)));
 }
 
 TEST_CASE("a time stamp counter that begins again at 0 gives the time that has passed") {

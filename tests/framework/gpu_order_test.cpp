@@ -62,8 +62,7 @@ TEST_CASE("a segment of uniform blocks is fenced behind the last command that re
   CHECK(device.reused > 50);
 }
 
-TEST_CASE(
-    "blocks of one command do not overlap, and its segment tells whether earlier blocks are still in it") {
+TEST_CASE("blocks of one command do not overlap, and their segment is known") {
   RecordedDevice device;
   UniformRing ring(device, 256, 64);
   ring.reserve(ring.roomFor(1) + ring.roomFor(65));

@@ -123,8 +123,7 @@ TEST_CASE("a texture is read as its sampling says, inside and outside") {
     })");
   const Buffer values(device(), 16, "values");
   const auto read = [&](Sampling sampling) {
-    device().dispatch(reading, Bindings{sampled(1, texture, sampling), storage(0, values)}, {1, 1, 1});
-    device().barrier();
+    dispatch(reading, Bindings{sampled(1, texture, sampling), storage(0, values)}, {1, 1, 1});
     return values.downloadValues<float>();
   };
   // Texel centres at u = 0.25 (1) and 0.75 (3): half-way 2; at u = 0.3 1.2. u = -0.25 is half a texel outside
@@ -174,8 +173,7 @@ TEST_CASE("a shadow sampler gives the filtered share of texels that the referenc
       values[3] = texture(map, vec4(0.5, 0.5, 1.0, 0.5));   // the other layer
     })");
   const Buffer values(device(), 16, "values");
-  device().dispatch(comparing, Bindings{sampled(0, depth, Sampling::shadow), storage(0, values)}, {1, 1, 1});
-  device().barrier();
+  dispatch(comparing, Bindings{sampled(0, depth, Sampling::shadow), storage(0, values)}, {1, 1, 1});
   const auto read = values.downloadValues<float>();
   CHECK(read[0] == Approx(0.5).margin(0.01));
   CHECK(read[1] == 1.0f);

@@ -35,10 +35,29 @@ AreaLightSamples samplesOf(const LightSet& set, const SceneSnapshot& snapshot, s
   return result;
 }
 
+/// A mask whose columns of texels from `firstHole` on are holes.
+SurfaceTexture columnMask(int width, int firstHole) {
+  SurfaceTexture mask;
+  mask.mask = true;
+  mask.width = width, mask.height = 4;
+  for (int i = 0; i < width * mask.height; ++i) mask.values.push_back(i % width < firstHole ? 1.0f : 0.0f);
+  return mask;
+}
+
+/// An area light of one square metre at the height 1 that shines downwards, u along x.
+Scene maskedAreaLight(const SurfaceTexture& mask, float radiance) {
+  SceneBuilder builder;
+  builder.scene.textures.push_back(mask);
+  Material material;
+  material.maskTexture = 0;
+  material.emission = glm::vec3(radiance);
+  builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, builder.material(material));
+  return builder.scene;
+}
+
 }  // namespace
 
-TEST_CASE(
-    "every area light has samples, which carry radiance times area of it, beside one 10^6 times as bright") {
+TEST_CASE("every area light has samples with its radiance times area, beside a far brighter one") {
   // The power of an area light's samples, W/sr along its normal, is the integral of its radiance over its
   // area.
   const std::vector<float> radiances{1.0f, 1e6f, 0.5f, 2e6f};
@@ -73,30 +92,6 @@ TEST_CASE("a scene without emission has no samples of area lights") {
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, builder.lambert(0.5f));
   CHECK(sampleLights(builder.scene, snapshotOf(builder.scene, 0.0), 16, 64).samples.empty());
 }
-
-namespace {
-
-/// A mask whose columns of texels from `firstHole` on are holes.
-SurfaceTexture columnMask(int width, int firstHole) {
-  SurfaceTexture mask;
-  mask.mask = true;
-  mask.width = width, mask.height = 4;
-  for (int i = 0; i < width * mask.height; ++i) mask.values.push_back(i % width < firstHole ? 1.0f : 0.0f);
-  return mask;
-}
-
-/// An area light of one square metre at the height 1 that shines downwards, u along x.
-Scene maskedAreaLight(const SurfaceTexture& mask, float radiance) {
-  SceneBuilder builder;
-  builder.scene.textures.push_back(mask);
-  Material material;
-  material.maskTexture = 0;
-  material.emission = glm::vec3(radiance);
-  builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, builder.material(material));
-  return builder.scene;
-}
-
-}  // namespace
 
 TEST_CASE("an area light whose mask leaves a share of it gives that share of the light, from there") {
   // Columns 0 to k-1 of n are opaque. Bilinearly between texel centres the coverage passes a half in the

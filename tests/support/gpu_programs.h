@@ -59,4 +59,17 @@ struct Depth {
   float unused[3] = {};
 };
 
+/// Draws so many vertices to targets.
+inline void draw(const gpu::RenderTargets& targets, const gpu::Program& program, const Bindings& bindings,
+                 const gpu::RasterState& state = {}, std::uint32_t vertices = 3) {
+  const gpu::Drawing drawing = device().drawTo(targets, state);
+  device().draw(program, bindings, vertices);
+}
+
+/// Runs groups of a program, and waits for what they write.
+inline void dispatch(const gpu::Program& program, const Bindings& bindings, const glm::uvec3& groups) {
+  device().dispatch(program, bindings, groups);
+  device().barrier();
+}
+
 }  // namespace lumivox::test
