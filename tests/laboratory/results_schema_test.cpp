@@ -6,8 +6,10 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/results/json.h"
 #include "results_sql.h"
 #include "stored_records.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
@@ -49,118 +51,81 @@ std::filesystem::path earlierStore(const TemporaryDirectory& directory, int sche
 }  // namespace
 
 TEST_CASE("a store of every earlier schema is imported: all that it holds, once, and it stays as it was") {
-  for (int schema = 1; schema <= 8; ++schema) {
-    CAPTURE(schema);
-    const TemporaryDirectory directory;
-    const auto file = earlierStore(directory, schema);
-    const std::string before = readFile(file);
-    ResultsStore store(directory.path() / "new.sqlite");
-    const MergeCount count = store.import(file);
-    CHECK(count.runs == 2);
-    CHECK(count.cells == (schema >= 2 ? 2u : 0u));
-    CHECK(count.peakRates == (schema >= 2 ? 1u : 0u));
-    const MergeCount again = store.import(file);
-    CHECK(again.runs + again.cells + again.peakRates == 0);
-    CHECK(readFile(file) == before);
-
-    StoredRun wanted = runNumber(1);
-    wanted.identity.referenceSamples = 37;
-    const std::vector<StoredRun> runs = store.runs();
-    REQUIRE(runs.size() == 2);
-    CHECK(store.count().untimed == 0);
-    CHECK(runs[1].point.failure == "it did not fit");
-    const StoredRun& run = runs[0];
-    CHECK(run.identity.key() == wanted.identity.key());
-    CHECK(run.identity.seed == wanted.identity.seed);
-    CHECK(run.sceneName == "Cornell box");
-    CHECK(run.isDefault);
-    CHECK(run.point.parameters == wanted.point.parameters);
-    CHECK(run.point.passOrder == wanted.point.passOrder);
-    CHECK(run.point.passBytes == wanted.point.passBytes);
-    CHECK(run.point.peakBytes == wanted.point.peakBytes);
-    CHECK(run.point.movedFrameMs.largest == 7.0);
-    CHECK(run.point.passHostMs.at("gather").median == 6.5);
-    CHECK(std::isnan(run.point.frameworkShare));
-    CHECK(run.point.whyNotCounted == wanted.point.whyNotCounted);
-    CHECK(run.point.healthFindings == wanted.point.healthFindings);
-    CHECK(run.point.passWork.empty() == (schema < 3));
-    CHECK(run.point.voxels.has_value() == (schema >= 7));
-    if (run.point.voxels) {
-      CHECK(run.point.voxels->resolution == someVoxels().resolution);
-      CHECK(run.point.voxels->holes.obliqueHoles == 3);
-    }
-    REQUIRE(run.point.errors.size() == 1);
-    const ComponentError& error = run.point.errors[0];
-    CHECK(error.reference == "one_bounce_diffuse");
-    CHECK(error.error.nonFiniteImage == 7);
-    CHECK(error.error.nonFiniteReference == 3);
-    CHECK(error.error.flip == 0.125);
-    CHECK(error.everyMetricPerSeed == (schema >= 4));
-    if (schema < 4) {
-      // Mean and both uncertainties; the other numbers are of the first seed alone.
-      CHECK(error.error.rmse.value == 8.0);
-      CHECK(error.error.rmse.uncertainty == Approx(0.05));
-      for (const NamedMetric& metric : metricsOf(error)) {
-        INFO(metric.name);
-        if (metric.name == "rmse") CHECK(metric.measured.enoughRepeats);
-        if (metric.name == "flip") CHECK_FALSE(metric.measured.enoughRepeats);
-      }
-    } else {
-      CHECK(run.point.notes == std::vector<std::string>{"6 of 8 layers were used"});
-      const std::vector<StoredImage> images = store.images(run.identity.key());
-      REQUIRE(images.size() == 1);
-      CHECK(images[0].png == "png");
-      CHECK(images[0].reference == "full");
-      const std::vector<RepeatedControl> controls = store.controls(run.identity);
-      REQUIRE(controls.size() == 1);
-      CHECK(controls[0].frameMs.value == 10.0);
-      CHECK(controls[0].frameMsAgain.value == 12.0);
-    }
-    if (schema < 2) continue;
-    StressCell cell = cellNumber(1);
-    cell.family = "image_and_camera";
-    StressCell found = store.stressCells().at(0);
-    found.id = 0;
-    CHECK(stressCellJson(found) == stressCellJson(cell));
-    CHECK(store.peakRates().at(0).rate.largest == 7.0);
-    CHECK(store.peakRates().at(0).shaderInput == "spirv");
-  }
-}
-
-TEST_CASE("a store that the first version wrote is imported") {
+  const int schema = GENERATE(range(1, 9));
+  CAPTURE(schema);
   const TemporaryDirectory directory;
-  const auto file = directory.path() / "old.sqlite";
-  writeEarlierStore(file, 1);
+  const auto file = earlierStore(directory, schema);
+  const std::string before = readFile(file);
   ResultsStore store(directory.path() / "new.sqlite");
-  CHECK(store.import(file).runs == 1);
-  const StoredRun run = store.runs().at(0);
-  CHECK(run.identity.sceneHash == "a3b52a9e0bb171f29b7ff4693f80ac8e");
-  CHECK(run.identity.width == 8);
-  CHECK(run.point.passOrder == std::vector<std::string>{"gbuffer", "shadow", "direct"});
-  CHECK(run.point.errors.size() == 3);
-  CHECK_FALSE(run.point.errors[0].everyMetricPerSeed);
+  const MergeCount count = store.import(file);
+  CHECK(count.runs == 2);
+  CHECK(count.cells == (schema >= 2 ? 2u : 0u));
+  CHECK(count.peakRates == (schema >= 2 ? 1u : 0u));
+  const MergeCount again = store.import(file);
+  CHECK(again.runs + again.cells + again.peakRates == 0);
+  CHECK(readFile(file) == before);
+
+  const std::vector<StoredRun> runs = store.runs();
+  REQUIRE(runs.size() == 2);
+  CHECK(store.count().untimed == 0);
+  CHECK(runs[1].point.failure == "it did not fit");
+  const StoredRun& run = runs[0];
+  REQUIRE(run.point.errors.size() == 1);
+  const ComponentError& error = run.point.errors[0];
+  // What this schema had: the run as it was stored, but for what came later.
+  StoredRun wanted = runNumber(1);
+  wanted.identity.referenceSamples = 37;
+  CHECK(run.identity.key() == wanted.identity.key());
+  wanted.id = run.id;
+  wanted.point.notes = run.point.notes;
+  wanted.point.errors[0].error.nonFiniteReference = 3;
+  wanted.point.errors[0].everyMetricPerSeed = schema >= 4;
+  if (schema < 3) wanted.point.passWork.clear();
+  if (schema < 7) wanted.point.voxels.reset();
+  if (schema < 4) {
+    // Mean and both uncertainties; the other numbers are of the first seed alone.
+    CHECK(error.error.rmse.value == 8.0);
+    CHECK(error.error.rmse.uncertainty == Approx(0.05));
+    wanted.point.errors[0].error.rmse = error.error.rmse;
+    wanted.point.errors[0].seeds = 5;
+    wanted.point.errors[0].deterministic = false;
+    for (const NamedMetric& metric : metricsOf(error))
+      if (metric.name == "rmse" || metric.name == "flip")
+        CHECK(metric.measured.enoughRepeats == (metric.name == "rmse"));
+  } else {
+    CHECK(run.point.notes == std::vector<std::string>{"6 of 8 layers were used"});
+    const std::vector<StoredImage> images = store.images(run.identity.key());
+    REQUIRE(images.size() == 1);
+    CHECK((images[0].png == "png" && images[0].reference == "full"));
+    const std::vector<RepeatedControl> controls = store.controls(run.identity);
+    REQUIRE(controls.size() == 1);
+    CHECK((controls[0].frameMs.value == 10.0 && controls[0].frameMsAgain.value == 12.0));
+  }
+  CHECK(runsJson({run}).dump(1) == runsJson({wanted}).dump(1));
+  if (schema < 2) return;
+  StressCell cell = cellNumber(1), found = store.stressCells().at(0);
+  cell.family = "image_and_camera";
+  found.id = 0;
+  CHECK(stressCellJson(found) == stressCellJson(cell));
+  CHECK(store.peakRates().at(0).rate.largest == 7.0);
+  CHECK(store.peakRates().at(0).shaderInput == "spirv");
 }
 
 TEST_CASE("a store of an earlier schema is refused with the command that imports it, and stays as it was") {
   const TemporaryDirectory directory;
-  const auto file = earlierStore(directory, 8);
+  const auto file = earlierStore(directory, 8), present = directory.path() / "new.sqlite";
   const std::string before = readFile(file);
-  for (const auto mode : {ResultsStore::Mode::read, ResultsStore::Mode::write}) {
-    const std::string told = messageOf<Error>([&] { ResultsStore store(file, mode); });
-    INFO(told);
-    CHECK(told.find("with schema 8") != std::string::npos);
-    CHECK(told.find("lumivox results import " + file.string() + " --store NEW") != std::string::npos);
-  }
+  for (const auto mode : {ResultsStore::Mode::read, ResultsStore::Mode::write})
+    CHECK_THROWS_MATCHES(ResultsStore(file, mode), Error,
+                         Tells("schema 8", "lumivox results import " + file.string() + " --store NEW"));
   CHECK(readFile(file) == before);
-  const auto present = directory.path() / "new.sqlite";
   ResultsStore store(present);
-  CHECK(messageOf<Error>([&] { store.import(present); }).find("results merge") != std::string::npos);
+  CHECK_THROWS_MATCHES(store.import(present), Error, Tells("results merge"));
   const auto text = directory.write("text.sqlite", std::string(4096, 'x'));
-  CHECK(messageOf<Error>([&] { store.import(text); }).find("text.sqlite") != std::string::npos);
+  CHECK_THROWS_MATCHES(store.import(text), Error, Tells("text.sqlite"));
 }
 
-TEST_CASE(
-    "the tables of the last schema with a column for each field are still there under SQL, with the same values") {
+TEST_CASE("the columns of the last schema are still there under SQL, with the same values") {
   const TemporaryDirectory directory;
   const auto earlier = earlierStore(directory, 8), file = directory.path() / "new.sqlite";
   ResultsStore(file).import(earlier);
@@ -222,7 +187,7 @@ TEST_CASE("a record of an earlier version, which lacks a field, is read with wha
   CHECK(run.point.errors.at(0).error.ssim == 1.0);
   CHECK(run.point.errors.at(0).error.flip == 0.125);
   execute(file, "UPDATE runs SET record = '{\"frame\": 1}'");
-  CHECK(messageOf<Error>([&] { store.runs(); }).find("is no record") != std::string::npos);
+  CHECK_THROWS_MATCHES(store.runs(), Error, Tells("record"));
 }
 
 TEST_CASE("the guide lists every table, view and column of the store") {
@@ -259,23 +224,17 @@ TEST_CASE("what is no results store is refused and stays as it was") {
   const TemporaryDirectory directory;
   const auto text = directory.write(
       "notes.txt", "This is no database, but long enough to look like one. " + std::string(2000, 'x'));
+  const auto absent = directory.path() / "absent", foreign = directory.path() / "foreign.sqlite",
+             later = directory.path() / "later.sqlite";
   const std::string before = readFile(text);
-  CHECK(messageOf<Error>([&] { ResultsStore store(text); }).find("notes.txt") != std::string::npos);
-  CHECK(readFile(text) == before);
-  CHECK(messageOf<Error>([&] {
-          ResultsStore store(directory.path() / "absent", ResultsStore::Mode::read);
-        }).find("there is no results store") != std::string::npos);
-  CHECK_FALSE(std::filesystem::exists(directory.path() / "absent"));
-
-  const auto foreign = directory.path() / "foreign.sqlite";
   execute(foreign, "CREATE TABLE a (b); PRAGMA user_version = 1");
-  CHECK(messageOf<Error>([&] { ResultsStore store(foreign); }).find("another kind") != std::string::npos);
-
-  const auto later = directory.path() / "later.sqlite";
   { ResultsStore store(later); }
   execute(later, "PRAGMA user_version = 99");
-  CHECK(messageOf<Error>([&] { ResultsStore store(later); }).find("schema 99") != std::string::npos);
-
-  CHECK(messageOf<Error>([&] { ResultsStore store("/proc/results.sqlite"); }).find("/proc") !=
-        std::string::npos);
+  CHECK_THROWS_MATCHES(ResultsStore(text), Error, Tells("notes.txt"));
+  CHECK(readFile(text) == before);
+  CHECK_THROWS_MATCHES(ResultsStore(absent, ResultsStore::Mode::read), Error, Tells(absent.string()));
+  CHECK_FALSE(std::filesystem::exists(absent));
+  CHECK_THROWS_MATCHES(ResultsStore(foreign), Error, Tells(foreign.string(), "another kind"));
+  CHECK_THROWS_MATCHES(ResultsStore(later), Error, Tells(later.string(), "schema 99"));
+  CHECK_THROWS_MATCHES(ResultsStore("/proc/results.sqlite"), Error, Tells("/proc"));
 }

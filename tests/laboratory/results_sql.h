@@ -39,7 +39,7 @@ inline std::string selected(const std::filesystem::path& file, const std::string
   return text;
 }
 
-/// A store as an earlier version wrote it, with schema 1 or 8.
+/// A store as an earlier version wrote it, with schema 8.
 inline void writeEarlierStore(const std::filesystem::path& file, int schema) {
   std::filesystem::create_directories(file.parent_path());
   execute(file, readFile(sourceDirectory() /
