@@ -33,8 +33,7 @@ double offWhole(const glm::dvec3& voxels) {
 
 }  // namespace
 
-TEST_CASE(
-    "a grid around bounds has its resolution along the longest side and one empty voxel on every side") {
+TEST_CASE("a grid around bounds has its resolution along the longest side and an empty margin") {
   const GridPlacement grid = placeGrid(boundsOf({-2, 0, 1}, {2, 1, 3}), 34);
   CHECK(grid.resolution.x == 34);
   // 4 m over 32 voxels, and half of a thousandth more.

@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/scene/atlas.h"
 #include "lumivox/scene/topology.h"
+#include "support/facts.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
@@ -116,6 +117,58 @@ double farthestGap(const Scene& scene, const SurfaceAtlas& atlas, double texelSi
   return farthest;
 }
 
+/// Of the unit square, mapped to a plane: how many outlines hold a random point, over points and outlines.
+struct Tiling {
+  int holes = 0, overlaps = 0;
+  double area = 0.0;  ///< of all outlines, m^2
+};
+Tiling tilingOf(const Scene& scene, double texelSize) {
+  const SurfaceAtlas atlas =
+      makeSurfaceAtlas(scene, std::vector<double>(scene.objects.size(), texelSize), AtlasPlaces::middles);
+  REQUIRE(atlas.outlines.size() == atlas.texels.size());
+  std::vector<std::vector<glm::dvec2>> polygons;  // x and z
+  Tiling tiling;
+  for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+    const AtlasTexel& texel = atlas.texels[i];
+    const glm::dvec3 e1 = corner(scene, texel.triangle, 1) - corner(scene, texel.triangle, 0),
+                     e2 = corner(scene, texel.triangle, 2) - corner(scene, texel.triangle, 0);
+    std::vector<glm::dvec2>& polygon = polygons.emplace_back();
+    REQUIRE(atlas.outlines[i].count >= 3);
+    for (std::uint32_t k = 0; k < atlas.outlines[i].count; ++k) {
+      const glm::dvec2 step(atlas.outlines[i].corners[k]);
+      const glm::dvec3 at = place(scene, texel) + step.x * e1 + step.y * e2;
+      polygon.emplace_back(at.x, at.z);
+    }
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+      tiling.area += 0.5 * (a.y * b.x - a.x * b.y);  // counter-clockwise as seen from above
+    }
+  }
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 4000; ++i) {
+    const auto t =
+        static_cast<std::uint32_t>(uniform(generator) * static_cast<double>(scene.triangleCount()));
+    const double root = std::sqrt(uniform(generator)), across = uniform(generator);
+    const glm::dvec3 point = (1.0 - root) * corner(scene, t, 0) +
+                             root * (1.0 - across) * corner(scene, t, 1) +
+                             root * across * corner(scene, t, 2);
+    int inside = 0, near = 0;
+    for (const std::vector<glm::dvec2>& polygon : polygons) {
+      double least = 1e9;
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()], side = b - a;
+        least = std::min(least, (side.y * (point.x - a.x) - side.x * (point.z - a.y)) / glm::length(side));
+      }
+      inside += least >= 0.0;
+      near += std::abs(least) < 1e-6;
+    }
+    tiling.holes += inside == 0 && near == 0;
+    tiling.overlaps += inside > 1 && near == 0;
+  }
+  return tiling;
+}
+
 }  // namespace
 
 TEST_CASE("no two pieces of surface share a texel, and every texel lies in the square and on its triangle") {
@@ -219,8 +272,8 @@ TEST_CASE("objects are measured as they are placed") {
 TEST_CASE("an atlas of nothing is empty, and one without bounds is refused before memory is taken") {
   CHECK(makeSurfaceAtlas(SceneBuilder().scene, 1.0).texels.empty());
   const Scene room = litRoom(8, 8);
-  CHECK(messageOf<Error>([&] { makeSurfaceAtlas(room, 0.0); }).find("above 0") != std::string::npos);
-  CHECK(messageOf<Error>([&] { makeSurfaceAtlas(room, 1e-9); }).find("texels") != std::string::npos);
+  CHECK_THROWS_MATCHES(makeSurfaceAtlas(room, 0.0), Error, Tells("above 0"));
+  CHECK_THROWS_MATCHES(makeSurfaceAtlas(room, 1e-9), Error, Tells("texels"));
 }
 
 TEST_CASE("the areas of texels sum to that of the surface, and every texel's chart is its triangle's") {
@@ -259,62 +312,6 @@ TEST_CASE("an object has texels of its own size; placed at middles they fill a r
       CHECK(along - std::floor(along) == Approx(0.5).margin(1e-5));
   }
 }
-
-namespace {
-
-/// Of the unit square, mapped to a plane: how many outlines hold a random point, over points and outlines.
-struct Tiling {
-  int holes = 0, overlaps = 0;
-  double area = 0.0;  ///< of all outlines, m^2
-};
-Tiling tilingOf(const Scene& scene, double texelSize) {
-  const SurfaceAtlas atlas =
-      makeSurfaceAtlas(scene, std::vector<double>(scene.objects.size(), texelSize), AtlasPlaces::middles);
-  REQUIRE(atlas.outlines.size() == atlas.texels.size());
-  std::vector<std::vector<glm::dvec2>> polygons;  // x and z
-  Tiling tiling;
-  for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
-    const AtlasTexel& texel = atlas.texels[i];
-    const glm::dvec3 e1 = corner(scene, texel.triangle, 1) - corner(scene, texel.triangle, 0),
-                     e2 = corner(scene, texel.triangle, 2) - corner(scene, texel.triangle, 0);
-    std::vector<glm::dvec2>& polygon = polygons.emplace_back();
-    REQUIRE(atlas.outlines[i].count >= 3);
-    for (std::uint32_t k = 0; k < atlas.outlines[i].count; ++k) {
-      const glm::dvec2 step(atlas.outlines[i].corners[k]);
-      const glm::dvec3 at = place(scene, texel) + step.x * e1 + step.y * e2;
-      polygon.emplace_back(at.x, at.z);
-    }
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-      tiling.area += 0.5 * (a.y * b.x - a.x * b.y);  // counter-clockwise as seen from above
-    }
-  }
-  std::mt19937 generator(5);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int i = 0; i < 4000; ++i) {
-    const auto t =
-        static_cast<std::uint32_t>(uniform(generator) * static_cast<double>(scene.triangleCount()));
-    const double root = std::sqrt(uniform(generator)), across = uniform(generator);
-    const glm::dvec3 point = (1.0 - root) * corner(scene, t, 0) +
-                             root * (1.0 - across) * corner(scene, t, 1) +
-                             root * across * corner(scene, t, 2);
-    int inside = 0, near = 0;
-    for (const std::vector<glm::dvec2>& polygon : polygons) {
-      double least = 1e9;
-      for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()], side = b - a;
-        least = std::min(least, (side.y * (point.x - a.x) - side.x * (point.z - a.y)) / glm::length(side));
-      }
-      inside += least >= 0.0;
-      near += std::abs(least) < 1e-6;
-    }
-    tiling.holes += inside == 0 && near == 0;
-    tiling.overlaps += inside > 1 && near == 0;
-  }
-  return tiling;
-}
-
-}  // namespace
 
 TEST_CASE("outlines tile a flat piece of surface, at borders that cut texels and over many triangles") {
   // Fronts are seen from above: x, then -z, is counter-clockwise.

@@ -3,21 +3,34 @@
 
 #include "lumivox/analysis/changes.h"
 #include "stored_records.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
+
+namespace {
+
+RunChange changeOf(const RunComparison& comparison, const std::string& quantity) {
+  for (const RunChange& one : comparison.changes)
+    if (one.quantity == quantity) return one;
+  FAIL("not compared: " << quantity);
+  return {};
+}
+
+/// Of so many frames that all took as long.
+TimingStatistics exactly(double ms, int repeats = 25) {
+  return {ms, ms, ms, ms, ms, repeats};
+}
+
+}  // namespace
 
 TEST_CASE("a change is significant beyond three standard uncertainties of the difference") {
   StoredRun before = runNumber(6), after = runNumber(6);
   before.point.errors[0].error.rmse = {1.0, 0.01};
   const auto change = [&](double rmse) {
     after.point.errors[0].error.rmse = {rmse, 0.01};
-    const RunComparison comparison = compareResults({before}, {after});
-    for (const RunChange& one : comparison.changes)
-      if (one.quantity == "indirect_diffuse rmse against one_bounce_diffuse") return one;
-    FAIL("the error was not compared");
-    return RunChange{};
+    return changeOf(compareResults({before}, {after}), "indirect_diffuse rmse against one_bounce_diffuse");
   };
   // sigma of the difference: sqrt(2) 0.01.
   CHECK(change(1.04).sigmas == Approx(0.04 / (std::sqrt(2.0) * 0.01)));
@@ -43,21 +56,11 @@ TEST_CASE("a time changed when its median moved beyond its spread and by a twent
   CHECK(frame(9.4, 0.001).better);
 }
 
-namespace {
-
-const RunChange& changeOf(const RunComparison& comparison, const std::string& quantity) {
-  for (const RunChange& one : comparison.changes)
-    if (one.quantity == quantity) return one;
-  throw std::runtime_error("not compared: " + quantity);
-}
-
-}  // namespace
-
 TEST_CASE("a time of fewer than three frames proves nothing, however far it moved") {
   StoredRun before = runNumber(6), after = runNumber(6);
   const auto frame = [&](int repeats) {
-    before.point.frameMs = {10.0, 10.0, 10.0, 10.0, 10.0, 25};
-    after.point.frameMs = {20.0, 20.0, 20.0, 20.0, 20.0, repeats};
+    before.point.frameMs = exactly(10.0);
+    after.point.frameMs = exactly(20.0, repeats);
     return changeOf(compareResults({before}, {after}), "frame ms");
   };
   for (const int repeats : {1, 2}) {
@@ -89,8 +92,8 @@ TEST_CASE("an error of fewer than three seeds proves nothing unless there are no
 
 TEST_CASE("times must be further apart than those of the same point measured twice") {
   StoredRun before = runNumber(6), after = runNumber(6);
-  before.point.frameMs = {10.0, 10.0, 10.0, 10.0, 10.0, 25};
-  after.point.frameMs = {11.0, 11.0, 11.0, 11.0, 11.0, 25};
+  before.point.frameMs = exactly(10.0);
+  after.point.frameMs = exactly(11.0);
   const auto control = [](double ms, double again) {
     return RepeatedControl{"2026-01-31 12:00:00 UTC", {ms, 0.0}, {1.0, 0.0}, {again, 0.0}, {1.0, 0.0}};
   };
@@ -110,17 +113,17 @@ TEST_CASE("points are matched by what they are called, and what cannot be compar
   const RunComparison times =
       compareResults({old, runNumber(2), runNumber(3)}, {now, runNumber(2), runNumber(4)});
   CHECK(times.compared == 2);
-  REQUIRE(times.onlyBefore.size() == 1);
-  CHECK(times.onlyBefore[0].find("cones=3") != std::string::npos);
-  REQUIRE(times.onlyAfter.size() == 1);
-  CHECK(times.onlyAfter[0].find("cones=4") != std::string::npos);
-  REQUIRE(times.incomparable.size() == 1);
-  CHECK(times.incomparable[0].find("different devices") != std::string::npos);
+  for (const auto& [names, told] : {std::pair(times.onlyBefore, Tells("cones=3")),
+                                    {times.onlyAfter, Tells("cones=4")},
+                                    {times.incomparable, Tells("devices")}}) {
+    REQUIRE(names.size() == 1);
+    CHECK_THAT(names[0], told);
+  }
   for (const RunChange& change : times.changes) CHECK_FALSE(change.significant);
 
   now = runNumber(1);
   now.identity.sceneHash = "other";
   CHECK(compareResults({old}, {now}).incomparable.size() == 1);
   now.point.failure = "4 GiB do not fit";
-  CHECK(compareResults({old}, {now}).incomparable.at(0).find("it fails now") != std::string::npos);
+  CHECK_THAT(compareResults({old}, {now}).incomparable.at(0), Tells("fails"));
 }

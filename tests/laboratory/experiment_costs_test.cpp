@@ -51,8 +51,7 @@ std::vector<Step> pointsOf(const std::vector<double>& frames) {
 
 }  // namespace
 
-TEST_CASE(
-    "the time that is left follows the frames of dearer pipelines that are to come, from the third on") {
+TEST_CASE("the time left follows the frames of dearer pipelines to come, from the third on") {
   const std::vector<double> frames{0.02, 0.03, 0.05, 0.2, 0.5, 1.2};
   const std::vector<Step> parts = pointsOf(frames);
   const std::vector<double> told = ratios(parts);
@@ -67,8 +66,7 @@ TEST_CASE(
   CHECK(before / after < 0.25);
 }
 
-TEST_CASE(
-    "points of a sweep cost what those of their pipeline did, whatever the others cost and how many they are") {
+TEST_CASE("points of a sweep cost what those of their pipeline did") {
   std::vector<Step> parts{{"cheap", "point", 1.0, 1.0}, {"dear", "point", 1.0, 20.0}};
   for (int i = 0; i < 30; ++i) parts.push_back({"cheap", "point", 1.0, 1.1});
   for (int i = 0; i < 10; ++i) parts.push_back({"dear", "point", 1.0, 19.0});
@@ -80,8 +78,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "a work that was not done on a subject is as dear as its other works are, compared with other subjects") {
+TEST_CASE("a new work on a subject costs in proportion to its other works") {
   Costs costs;
   costs.add("slow", "errors", 1.0, 30.0);
   costs.add("quick", "errors", 1.0, 10.0);
@@ -101,8 +98,7 @@ TEST_CASE(
   CHECK(costs.most("quick", "times", 2.0).value() == 12.0);
 }
 
-TEST_CASE(
-    "a reproduction tells no time before it knows a step of each kind, and none that leaves its panels out") {
+TEST_CASE("a reproduction tells no time before a step of each kind, panels included") {
   ReproduceOptions options;
   options.repeats = 5;
   std::vector<double> told;
@@ -127,8 +123,7 @@ TEST_CASE(
   CHECK(told.back() == 0.0);
 }
 
-TEST_CASE(
-    "while points are measured the time that is left counts the times of the batch and dearer pipelines to come") {
+TEST_CASE("the time left counts the times of the batch and dearer pipelines to come") {
   const TemporaryDirectory place;
   TechniqueSet hostile({binaryDirectory() / "tests/plugins/hostile"});
   const Scene scene = litRoom(8, 8);

@@ -9,6 +9,7 @@
 #include "experiment/turns.h"
 #include "framework/pipeline_toys.h"
 #include "lumivox/analysis/slopes.h"
+#include "support/facts.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
@@ -20,8 +21,7 @@ namespace {
 constexpr float kDirect = 1.0f;
 
 /// A pass whose image comes nearer to the reference with every frame.
-class Progressive : public Toy {
- public:
+struct Progressive : Toy {
   using Toy::Toy;
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::camera | Reads::history; }
@@ -32,8 +32,7 @@ class Progressive : public Toy {
 };
 
 /// The pixel of an upright or level edge: 1 where its ray passes before it.
-class Edge : public Toy {
- public:
+struct Edge : Toy {
   using Toy::Toy;
   Param<float> at{this, "at", 0.5f, {0.0f, 1.0f}, "", "of the pixel lies before the edge"};
   Param<bool> level{this, "level", false, "whether it is level"};
@@ -46,8 +45,7 @@ class Edge : public Toy {
 };
 
 /// The light of two bounces in a furnace of albedo a and emission 1, where a is direct light: a² + a³.
-class TwoBounces : public Toy {
- public:
+struct TwoBounces : Toy {
   using Toy::Toy;
   Out<Image> radiance{this, "radiance", Contributes::indirectDiffuse};
   Reads readsFrom() const override { return Reads::camera; }
@@ -61,8 +59,7 @@ Pipeline toyPipeline(const std::string& pass, const std::string& output) {
       "toy.pipeline");
 }
 
-class Toys : public TestTechniques {
- public:
+struct Toys : TestTechniques {
   Toys() {
     add<Progressive>("toys", "progressive");
     add<TwoBounces>("toys", "two_bounces");
@@ -96,8 +93,7 @@ ReportPoint measured(Toys& toys, const Scene& scene, const Pipeline& pipeline, i
 
 }  // namespace
 
-TEST_CASE(
-    "a progressive pipeline is judged by its last frame, each position in the pixel accumulated from nothing") {
+TEST_CASE("a progressive pipeline is judged by its last frame, accumulated from nothing") {
   Toys toys;
   const Scene scene = furnace(0.0f);
   const Pipeline pipeline = toyPipeline("progressive", "direct");
@@ -177,10 +173,12 @@ TEST_CASE("the time of a point of several frames is that of all of them, from no
 
 TEST_CASE("points after more and more frames are planned for progressive pipelines alone") {
   Toys toys;
-  ReportOptions options;
-  options.frames = 6;
-  const auto framesIn = [&](const std::string& pass, const std::string& output) {
-    const experiment::LoadedPipeline loaded = experiment::withSettings(toyPipeline(pass, output), {});
+  const auto framesIn = [&](const std::string& pass, int most, const std::vector<Sweep>& sweeps = {}) {
+    ReportOptions options;
+    options.frames = most;
+    Pipeline pipeline = toyPipeline(pass, "direct");
+    pipeline.sweeps = sweeps;
+    const experiment::LoadedPipeline loaded = experiment::withSettings(pipeline, {});
     std::vector<int> frames;
     for (const experiment::PlannedPoint& point : experiment::pointsFor(loaded, toys, options)) {
       frames.push_back(framesOf(point.parameters));
@@ -188,36 +186,22 @@ TEST_CASE("points after more and more frames are planned for progressive pipelin
     }
     return frames;
   };
-  CHECK(framesIn("progressive", "direct") == std::vector<int>{1, 2, 4, 6});
-  CHECK(framesIn("paint", "direct") == std::vector<int>{1});
-  options.frames = 1;
-  CHECK(framesIn("progressive", "direct") == std::vector<int>{1});
-}
-
-TEST_CASE("an axis of frames in a sweep is planned for progressive pipelines, and others go without it") {
-  Toys toys;
-  const auto framesIn = [&](const std::string& pass) {
-    Pipeline pipeline = toyPipeline(pass, "direct");
-    ParameterValue one, four;
-    one.number = 1.0;
-    four.number = 4.0;
-    pipeline.sweeps.push_back({"steps", false, {{kAccumulatedFrames, {one, four}}}, {}});
-    const experiment::LoadedPipeline loaded = experiment::withSettings(pipeline, {});
-    std::vector<int> frames;
-    for (const experiment::PlannedPoint& point : experiment::pointsFor(loaded, toys, {}))
-      frames.push_back(framesOf(point.parameters));
-    return frames;
-  };
-  CHECK(framesIn("progressive") == std::vector<int>{1, 4});
-  CHECK(framesIn("paint") == std::vector<int>{1});
-  const Sweep steps{"steps", false, {{kAccumulatedFrames, {}}}, {}};
-  CHECK(experiment::withoutFrames(toyPipeline("paint", "direct"), {steps}, false)
-            .find("without the axis 'frames'") != std::string::npos);
+  CHECK(framesIn("progressive", 6) == std::vector<int>{1, 2, 4, 6});
+  CHECK(framesIn("progressive", 1) == std::vector<int>{1});
+  CHECK(framesIn("paint", 6) == std::vector<int>{1});
+  // An axis of frames in a sweep: others go without it, and say so.
+  ParameterValue one, four;
+  one.number = 1.0;
+  four.number = 4.0;
+  const Sweep steps{"steps", false, {{kAccumulatedFrames, {one, four}}}, {}};
+  CHECK(framesIn("progressive", ReportOptions().frames, {steps}) == std::vector<int>{1, 4});
+  CHECK(framesIn("paint", ReportOptions().frames, {steps}) == std::vector<int>{1});
+  CHECK_THAT(experiment::withoutFrames(toyPipeline("paint", "direct"), {steps}, false),
+             Tells("without", "frames"));
   CHECK(experiment::withoutFrames(toyPipeline("paint", "direct"), {steps}, true).empty());
 }
 
-TEST_CASE(
-    "an output of two bounces is judged by two bounces for its bias and by all light for what is missing") {
+TEST_CASE("an output of two bounces has its bias against two, its misses against all light") {
   Toys toys;
   const ReportPoint point = measured(toys, furnace(0.5f), toyPipeline("two_bounces", "indirect"), 1);
   std::map<std::string, Measured> difference;  // of the means; the reference has noise

@@ -1,4 +1,6 @@
 // The protocol of times: points take turns, and a failure is a point's own.
+#include <span>
+
 #include "experiment/turns.h"
 #include "framework/pipeline_toys.h"
 #include "lumivox/base/error.h"
@@ -27,6 +29,12 @@ class Turns {
           return experiment::TimedPoint({device(), toys_, scene_, options_, 8, 8, memory}, pipeline_, point);
         }};
   }
+  /// Points "a", "b" ..., and their turns.
+  std::vector<Turn> turnsOf(std::span<ReportPoint> points) {
+    std::vector<Turn> all;
+    for (std::size_t i = 0; i < points.size(); ++i) all.push_back(turn(std::string(1, "abcd"[i]), points[i]));
+    return all;
+  }
   std::vector<std::string> events;
 
  private:
@@ -41,8 +49,7 @@ class Turns {
 TEST_CASE("points that are timed in turns have all their repeats and frames, and pass orders of one frame") {
   Turns turns;
   ReportPoint points[3];
-  std::vector<Turn> all;
-  for (ReportPoint& point : points) all.push_back(turns.turn("point", point));
+  std::vector<Turn> all = turns.turnsOf(points);
   experiment::timeInTurns(device(), all, 3, 2);
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(all[i].failure.empty());
@@ -58,9 +65,7 @@ TEST_CASE("points that are timed in turns have all their repeats and frames, and
 TEST_CASE("a point that fits alone but not beside others is timed after them, and has no failure") {
   Turns turns;
   ReportPoint points[4];
-  std::vector<Turn> all;
-  const auto* names = "abcd";
-  for (std::size_t i = 0; i < 4; ++i) all.push_back(turns.turn(std::string(1, names[i]), points[i]));
+  std::vector<Turn> all = turns.turnsOf(points);
   // The third takes all memory: none may be open beside it.
   std::size_t open = 0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -84,13 +89,10 @@ TEST_CASE("a point that fits alone but not beside others is timed after them, an
   }
 }
 
-TEST_CASE(
-    "a point that fails while others wait is timed again alone; one that fails even alone says why, and costs no other") {
+TEST_CASE("a point that fails beside others is timed again alone, and costs no other") {
   Turns turns;
   ReportPoint points[4];
-  std::vector<Turn> all;
-  const auto* names = "abcd";
-  for (std::size_t i = 0; i < 4; ++i) all.push_back(turns.turn(std::string(1, names[i]), points[i]));
+  std::vector<Turn> all = turns.turnsOf(points);
   int readings = 0;
   all[1].read = [&](experiment::TimedPoint&) {
     if (++readings == 1) throw Error("no memory for a moment");

@@ -4,6 +4,7 @@
 #include "experiment/gathered_voxels.h"
 #include "lumivox/base/file.h"
 #include "lumivox/scene/scene.h"
+#include "support/facts.h"
 #include "support/techniques.h"
 
 using namespace lumivox;
@@ -143,7 +144,7 @@ TEST_CASE("voxels of a grid that is too fine are not judged, and say so") {
   const GatheredVoxels voxels =
       judging.judged(pipeline("imperfect_volumes_visible"), {"resolution=512"}).value();
   CHECK(voxels.output == "voxels.fragments");
-  CHECK(voxels.whyNot.find("512 voxels along a side") != std::string::npos);
-  CHECK(voxels.whyNot.find("up to 256") != std::string::npos);
+  CHECK_THAT(voxels.whyNot, Tells("512 voxels along a side"));
+  CHECK_THAT(voxels.whyNot, Tells("up to 256"));
   CHECK(voxels.occupied == 0);
 }

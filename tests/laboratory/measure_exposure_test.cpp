@@ -109,8 +109,7 @@ TEST_CASE("several images share one exposure, to which each adds what is lit in 
   CHECK(meter.exposure() == greyAt(2.0));
 }
 
-TEST_CASE(
-    "an exposure is lowered until less than one pixel in a hundred is brighter than white, and no further") {
+TEST_CASE("an exposure is lowered until less than 1 % of the pixels exceed white, no further") {
   const auto with = [](double share, float first) {
     ExposureMeter meter;
     meter.add(withFirst(static_cast<std::size_t>(share * kSide * kSide), first, 0.02f));

@@ -52,8 +52,7 @@ ImageBuffer referenceVariance() {
 
 }  // namespace
 
-TEST_CASE(
-    "a known bias and a known noise are told apart, and their squares add up with the reference's noise") {
+TEST_CASE("a known bias and noise are told apart; their squares and the reference's add up") {
   const std::vector<ImageBuffer> seeds = seedsOf(8, kReference + kBias, kNoise);
   const ErrorParts parts = errorParts(seeds, reference(), referenceVariance());
   // 12288 values: a square is known to sqrt(2/12288) = 1.3 % of what noise there is.
@@ -94,8 +93,7 @@ TEST_CASE("noise that moves all pixels together does not make the bias look cert
   CHECK(two.bias.uncertainty > 0.2 * two.noise.value);
 }
 
-TEST_CASE(
-    "an image without noise has the reference's noise taken off its error, and one seed tells nothing") {
+TEST_CASE("without noise the reference's is taken off the error, and one seed tells nothing") {
   const ImageBuffer flat(kSize, kSize, 3, kReference + kBias);
   const ErrorParts parts = errorParts({flat, flat}, reference(), referenceVariance(), true);
   CHECK(std::abs(parts.bias.value - kBias) < 3.0 * parts.bias.uncertainty);
@@ -135,39 +133,33 @@ TEST_CASE("a pixel that is not finite in one channel of one seed counts in no nu
   CHECK(parts.bias.value < 2.0 * kBias);
 }
 
-TEST_CASE(
-    "every number over seeds is the mean of each seed's own, and the spread is added to the reference's noise") {
+TEST_CASE("every number over seeds is the mean of each seed's, their spread added to its noise") {
   const std::vector<ImageBuffer> seeds = seedsOf(4, kReference + kBias, kNoise);
   const SeedsError all = compareSeeds(seeds, reference(), referenceVariance());
   std::vector<ImageError> each;
   for (const ImageBuffer& seed : seeds) each.push_back(compare(seed, reference(), referenceVariance()));
-  const auto check = [&](const char* name, const auto& value, const auto& uncertainty) {
+  const auto check = [&](const char* name, const auto& number) {
     INFO(name);
     std::vector<double> values;
-    for (const ImageError& one : each) values.push_back(value(one));
-    const Measured over = meanOverSeeds(values);
+    for (const ImageError& one : each) values.push_back(number(one).value);
+    const Measured over = meanOverSeeds(values), mean = number(all.mean);
     CHECK(over.uncertainty > 0.0);
-    CHECK(value(all.mean) == over.value);
-    CHECK(uncertainty(all.mean) == Approx(std::hypot(uncertainty(each.front()), over.uncertainty)));
+    CHECK(mean.value == over.value);
+    CHECK(mean.uncertainty == Approx(std::hypot(number(each.front()).uncertainty, over.uncertainty)));
   };
-  for (const auto& [name, number] :
+  for (const auto& [name, member] :
        {std::pair{"rmse", &ImageError::rmse}, std::pair{"relative MSE", &ImageError::relativeMse},
         std::pair{"mean ratio", &ImageError::meanRatio}, std::pair{"bias", &ImageError::bias}})
-    check(
-        name, [number = number](const ImageError& e) { return (e.*number).value; },
-        [number = number](const ImageError& e) { return (e.*number).uncertainty; });
-  check(
-      "percentile", [](const ImageError& e) { return e.percentile95; },
-      [](const ImageError& e) { return e.percentile95Uncertainty; });
-  check(
-      "ssim", [](const ImageError& e) { return e.ssim; },
-      [](const ImageError& e) { return e.ssimUncertainty; });
-  check(
-      "flip", [](const ImageError& e) { return e.flip; },
-      [](const ImageError& e) { return e.flipUncertainty; });
-  check(
-      "flip ldr", [](const ImageError& e) { return e.flipLdr; },
-      [](const ImageError& e) { return e.flipLdrUncertainty; });
+    check(name, [member = member](const ImageError& e) { return e.*member; });
+  using Numbers = std::pair<double ImageError::*, double ImageError::*>;
+  for (const auto& [value, uncertainty] :
+       {Numbers{&ImageError::percentile95, &ImageError::percentile95Uncertainty},
+        Numbers{&ImageError::ssim, &ImageError::ssimUncertainty},
+        Numbers{&ImageError::flip, &ImageError::flipUncertainty},
+        Numbers{&ImageError::flipLdr, &ImageError::flipLdrUncertainty}})
+    check("percentile, SSIM or FLIP", [value = value, uncertainty = uncertainty](const ImageError& e) {
+      return Measured{e.*value, e.*uncertainty};
+    });
   CHECK(all.flipMap.values() == flipHdr(seeds.front(), reference()).values());
 }
 
@@ -187,8 +179,7 @@ TEST_CASE("a static image does not flicker, and frames with noise of their own f
   CHECK(restless.uncertainty < 0.03 * restless.value);
 }
 
-TEST_CASE(
-    "the reference's own motion is no flicker, and an image that lags behind it flickers by what it missed") {
+TEST_CASE("the reference's motion is no flicker; an image that lags flickers by what it missed") {
   std::vector<ImageBuffer> references, following, frozen;
   for (int f = 0; f < 5; ++f) {
     references.emplace_back(kSize, kSize, 3, kReference + 0.1f * static_cast<float>(f));

@@ -72,6 +72,11 @@ VoxelSet filled(const glm::ivec3& resolution, const std::function<bool(const glm
   return set;
 }
 
+VoxelReference touchedBy(const ExactTriangle& triangle, const glm::ivec3& resolution,
+                         double tolerance = kContactTolerance) {
+  return trueVoxels(std::span(&triangle, 1), resolution, tolerance);
+}
+
 bool subset(const VoxelSet& part, const VoxelSet& whole) {
   for (std::size_t i = 0; i < part.words().size(); ++i)
     if ((part.words()[i] & ~whole.words()[i]) != 0) return false;
@@ -153,7 +158,7 @@ TEST_CASE("random triangles touch every voxel that holds one of their points, an
     const glm::dvec3 at = 20.0 * glm::dvec3(uniform(generator), uniform(generator), uniform(generator));
     for (glm::dvec3& corner : triangle)
       corner = at + size * (glm::dvec3(uniform(generator), uniform(generator), uniform(generator)) - 0.5);
-    const VoxelReference reference = trueVoxels(std::span(&triangle, 1), resolution, 0.0);
+    const VoxelReference reference = touchedBy(triangle, resolution, 0.0);
     // Points of the triangle, none farther from the next than a hundredth of a voxel along each edge.
     const int steps = static_cast<int>(std::ceil(40.0 * size));
     VoxelSet sampled(resolution);
@@ -168,7 +173,7 @@ TEST_CASE("random triangles touch every voxel that holds one of their points, an
     CHECK(subset(sampled, reference.certain));
     // Voxels that the samples miss are grazed: shrunk by two sample distances, the voxel is not touched any
     // more.
-    const VoxelReference deep = trueVoxels(std::span(&triangle, 1), resolution, 0.06);
+    const VoxelReference deep = touchedBy(triangle, resolution, 0.06);
     CHECK(subset(deep.certain, sampled));
     CHECK(subset(deep.certain, reference.certain));
     CHECK(subset(reference.certain, deep.possible));
@@ -186,51 +191,49 @@ TEST_CASE("a large triangle is found by dropping whole blocks as by testing ever
     const VoxelSet each = filled(resolution, [&](const glm::ivec3& voxel) {
       return test.overlaps(glm::dvec3(voxel) + 0.5, glm::dvec3(0.5));
     });
-    CHECK(trueVoxels(std::span(&triangle, 1), resolution, 0.0).certain == each);
+    CHECK(touchedBy(triangle, resolution, 0.0).certain == each);
   }
 }
 
 TEST_CASE("points, lines and needles touch the voxels along them") {
   const glm::ivec3 resolution(32);
-  const ExactTriangle point{glm::dvec3(3.5), glm::dvec3(3.5), glm::dvec3(3.5)};
-  CHECK(trueVoxels(std::span(&point, 1), resolution).certain.count() == 1);
-  const ExactTriangle corner{glm::dvec3(4.0), glm::dvec3(4.0), glm::dvec3(4.0)};
-  CHECK(trueVoxels(std::span(&corner, 1), resolution, 0.0).certain.count() == 8);
-  CHECK(trueVoxels(std::span(&corner, 1), resolution).certain.count() == 0);
-  const ExactTriangle along{glm::dvec3(1.5, 2.5, 2.5), glm::dvec3(9.5, 2.5, 2.5), glm::dvec3(4.5, 2.5, 2.5)};
-  CHECK(trueVoxels(std::span(&along, 1), resolution).certain.count() == 9);
+  const auto certain = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, auto... tolerance) {
+    return touchedBy({a, b, c}, resolution, tolerance...).certain.count();
+  };
+  const glm::dvec3 point(3.5), corner(4.0);
+  CHECK(certain(point, point, point) == 1);
+  CHECK(certain(corner, corner, corner, 0.0) == 8);
+  CHECK(certain(corner, corner, corner) == 0);
+  CHECK(certain({1.5, 2.5, 2.5}, {9.5, 2.5, 2.5}, {4.5, 2.5, 2.5}) == 9);
   // A slanted line crosses one face after another: one voxel more than it crosses faces.
   const glm::dvec3 from(1.13, 2.29, 3.41), to(29.17, 25.31, 19.47);
   const std::uint64_t faces = (29 - 1) + (25 - 2) + (19 - 3);
-  for (const double width : {0.0, 1e-9}) {
-    const ExactTriangle line{from, to, to + glm::dvec3(width, -width, 0.0)};
-    CHECK(trueVoxels(std::span(&line, 1), resolution, 0.0).certain.count() == faces + 1);
-  }
+  for (const double width : {0.0, 1e-9})
+    CHECK(certain(from, to, to + glm::dvec3(width, -width, 0.0), 0.0) == faces + 1);
   // One to a million: as wide as a thirty-thousandth of a voxel, so within the tolerance of the line.
-  const ExactTriangle needle{from, to, to + glm::dvec3(3.3e-5, -3.3e-5, 0.0)}, line{from, to, to};
-  const VoxelReference thin = trueVoxels(std::span(&needle, 1), resolution);
+  const VoxelReference thin = touchedBy({from, to, to + glm::dvec3(3.3e-5, -3.3e-5, 0.0)}, resolution);
   CHECK(thin.certain.count() <= faces + 1);
   CHECK(thin.possible.count() >= faces + 1);
-  CHECK(subset(trueVoxels(std::span(&line, 1), resolution).certain, thin.possible));
+  CHECK(subset(touchedBy({from, to, to}, resolution).certain, thin.possible));
 }
 
 TEST_CASE("what lies outside the grid or nowhere touches nothing, and what reaches in is cut off") {
   const glm::ivec3 resolution(8);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
                    kInfinity = std::numeric_limits<double>::infinity();
-  for (const double bad : {kNan, kInfinity, -kInfinity}) {
-    const ExactTriangle broken{glm::dvec3(1), glm::dvec3(2, bad, 2), glm::dvec3(3, 1, 1)};
-    CHECK(trueVoxels(std::span(&broken, 1), resolution).possible.count() == 0);
-  }
-  const ExactTriangle beside{glm::dvec3(-1e9, -1e9, 9), glm::dvec3(1e9, -1e9, 9), glm::dvec3(0, 1e9, 9)};
-  CHECK(trueVoxels(std::span(&beside, 1), resolution).possible.count() == 0);
-  const ExactTriangle through{glm::dvec3(-1e9, -1e9, 3.5), glm::dvec3(1e9, -1e9, 3.5),
-                              glm::dvec3(0, 1e9, 3.5)};
-  CHECK(trueVoxels(std::span(&through, 1), resolution).certain.count() == 64);
-  const ExactTriangle behindCorner{glm::dvec3(-3, 0.9, 0.9), glm::dvec3(0.9, -3, 0.9),
-                                   glm::dvec3(0.9, 0.9, -3)};
+  for (const double bad : {kNan, kInfinity, -kInfinity})
+    CHECK(
+        touchedBy({glm::dvec3(1), glm::dvec3(2, bad, 2), glm::dvec3(3, 1, 1)}, resolution).possible.count() ==
+        0);
+  const auto levelAt = [&](double z) {
+    return touchedBy({glm::dvec3(-1e9, -1e9, z), glm::dvec3(1e9, -1e9, z), glm::dvec3(0, 1e9, z)},
+                     resolution);
+  };
+  CHECK(levelAt(9.0).possible.count() == 0);
+  CHECK(levelAt(3.5).certain.count() == 64);
   // Its plane x + y + z = -1.2 passes the grid, though its bounding box does not.
-  CHECK(trueVoxels(std::span(&behindCorner, 1), resolution).possible.count() == 0);
+  CHECK(touchedBy({glm::dvec3(-3, 0.9, 0.9), glm::dvec3(0.9, -3, 0.9), glm::dvec3(0.9, 0.9, -3)}, resolution)
+            .possible.count() == 0);
 }
 
 TEST_CASE("the reference of a scene follows the placement, the motion and the deformation of its objects") {
@@ -297,15 +300,13 @@ TEST_CASE("precision and recall count certain voxels, and undecided ones for nei
   const auto upTo = [&](int low, int high) {
     return filled(resolution, [&](const glm::ivec3& voxel) { return voxel.x >= low && voxel.x < high; });
   };
-  const VoxelReference reference{upTo(2, 6), upTo(1, 7)};
+  const VoxelReference reference{upTo(2, 6), upTo(1, 7)}, nothing{upTo(0, 0), upTo(0, 0)};
   const VoxelError error = compareVoxels(upTo(4, 9), reference);
   CHECK((error.truePositive == 2 && error.falsePositive == 2 && error.falseNegative == 2));
   CHECK((error.precision() == 0.5 && error.recall() == 0.5));
-  const VoxelError whole = compareVoxels(upTo(1, 7), reference), least = compareVoxels(upTo(2, 6), reference);
-  CHECK((whole.precision() == 1.0 && whole.recall() == 1.0));
-  CHECK((least.precision() == 1.0 && least.recall() == 1.0));
-  const VoxelError nothing = compareVoxels(upTo(0, 0), {upTo(0, 0), upTo(0, 0)});
-  CHECK((nothing.precision() == 1.0 && nothing.recall() == 1.0));
+  for (const VoxelError& right : {compareVoxels(upTo(1, 7), reference), compareVoxels(upTo(2, 6), reference),
+                                  compareVoxels(upTo(0, 0), nothing)})
+    CHECK((right.precision() == 1.0 && right.recall() == 1.0));
   CHECK(compareVoxels(upTo(0, 0), reference).recall() == 0.0);
   CHECK_THROWS_AS(compareVoxels(VoxelSet({1, 1, 1}), reference), Error);
 }

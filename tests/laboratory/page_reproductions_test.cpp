@@ -9,10 +9,12 @@
 #include "lumivox/base/file.h"
 #include "lumivox/page/contact_sheet.h"
 #include "lumivox/page/reproduction_page.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
 using Catch::Contains;
+using lumivox::test::Tells;
 
 namespace {
 
@@ -32,7 +34,7 @@ ShownPanel panel(const std::string& name, int width, int height, float radiance)
   return result;
 }
 
-ReproducedResult table() {
+ReproducedResult aTable() {
   ReproducedResult result;
   result.published.id = "table-1";
   result.published.title = "A | B";
@@ -170,12 +172,12 @@ TEST_CASE("curves come as rows of numbers and as a drawing with a line of slope 
 
 TEST_CASE("results are read as they were kept, and judged anew") {
   const test::TemporaryDirectory directory;
-  const std::string json = reproductionsAsJson({figure(), table()});
+  const std::string json = reproductionsAsJson({figure(), aTable()});
   const auto file = directory.write("kept.json", json);
   const std::vector<ReproducedResult> read = judged(readReproductions(file));
   REQUIRE(read.size() == 2);
   CHECK(reproductionsAsJson(read) == json);
-  CHECK(reproductionsAsMarkdown(read) == reproductionsAsMarkdown({figure(), table()}));
+  CHECK(reproductionsAsMarkdown(read) == reproductionsAsMarkdown({figure(), aTable()}));
   CHECK(read[1].judged.rows[1].verdict == Verdict::reproduced);
   CHECK(read[1].judged.rows[2].verdict == Verdict::notReproduced);
   CHECK(read[0].judgedCurves[0].verdict == Verdict::reproduced);
@@ -187,23 +189,22 @@ TEST_CASE("results are read as they were kept, and judged anew") {
 
 TEST_CASE("a file that keeps no results is refused with its name and the place") {
   const test::TemporaryDirectory directory;
-  const auto refusal = [&](const std::string& text) {
-    const auto file = directory.write("bad.json", text);
-    return test::messageOf<Error>([&] { readReproductions(file); });
+  const auto refuse = [&](const std::string& text, const Tells& told) {
+    CHECK_THROWS_MATCHES(readReproductions(directory.write("bad.json", text)), Error, told);
   };
-  for (const char* text : {"", "[", "{}", "{\"version\": 1}", "[]", "7", "{\"version\": 2, \"results\": []}"})
-    CHECK_THAT(refusal(text), Contains("bad.json"));
-  CHECK_THAT(refusal("{\"version\": 2, \"results\": []}"), Contains("expected 1"));
-  std::string json = reproductionsAsJson({figure(), table()});
-  json.replace(json.rfind("\"measures\": \"time\""), 18, "\"measures\": \"mood\"");
-  CHECK_THAT(refusal(json), Contains("results[1]") && Contains("'mood'"));
-  json = reproductionsAsJson({table()});
-  json.replace(json.find("\"published\": 1.0"), 16, "\"published\": \"1\"");
-  CHECK_THAT(refusal(json), Contains("results[0]"));
+  const auto changed = [](std::string json, std::size_t at, std::size_t length, const char* by) {
+    return json.replace(at, length, by);
+  };
+  for (const char* text : {"", "[", "{}", "{\"version\": 1}", "[]", "7"}) refuse(text, Tells("bad.json"));
+  refuse("{\"version\": 2, \"results\": []}", Tells("bad.json", "expected 1"));
+  const std::string both = reproductionsAsJson({figure(), aTable()}), one = reproductionsAsJson({aTable()});
+  refuse(changed(both, both.rfind("\"measures\": \"time\""), 18, "\"measures\": \"mood\""),
+         Tells("results[1]", "mood"));
+  refuse(changed(one, one.find("\"published\": 1.0"), 16, "\"published\": \"1\""), Tells("results[0]"));
 }
 
 TEST_CASE("a passage of a card is written from the kept results, and what stands around it stays") {
-  const std::vector<ReproducedResult> results{table(), figure()};
+  const std::vector<ReproducedResult> results{aTable(), figure()};
   const auto written = [&](const std::string& text) {
     return withReproducedPassages(text, "card.md", results);
   };
@@ -225,7 +226,7 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
           "-->b : c, d : absent = 1 : 15.2 : -, published 1 : 3 : 1.33: *not reproduced*, *not comparable* (it is not "
           "here); the whole table"));
   // What all names share, at their beginning or at their end, stands once.
-  ReproducedResult shared = table();
+  ReproducedResult shared = aTable();
   shared.rows[0].name = "room, 64, time";
   shared.rows[1].name = "room, 128, time";
   shared.rows[2].name = "room, 64, memory";
@@ -242,7 +243,7 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
   CHECK_THAT(written("<!-- reproduced curve figure-2; volume --><!-- end -->"),
              Contains("-->resolution^1.00") && Contains("(published: linear), reproduced<"));
   // By the name that people know it by, too.
-  ReproducedResult cited = table();
+  ReproducedResult cited = aTable();
   cited.published.id = "004-table-1";
   cited.published.paper = "Lensing and Broll 2013, Table 1";
   for (const char* name : {"004-table-1", "lensing2013-table-1"})
@@ -257,34 +258,32 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
 }
 
 TEST_CASE("a passage that cannot be written is refused at its line") {
-  const std::vector<ReproducedResult> results{table(), figure()};
-  const auto refusal = [&](const std::string& text) {
-    return test::messageOf<Error>([&] { withReproducedPassages("one\n" + text, "card.md", results); });
-  };
-  CHECK_THAT(refusal("<!-- reproduced table table-1 -->"), Contains("card.md:2: ") && Contains("no end"));
-  CHECK_THAT(refusal("<!-- reproduced table table-1"), Contains("card.md:2: "));
-  CHECK_THAT(refusal("<!-- reproduced table table-1 --> <!-- reproduced table table-1 --><!-- end -->"),
-             Contains("no end"));
-  CHECK_THAT(refusal("\n<!-- reproduced table table-2 --><!-- end -->"),
-             Contains("card.md:3: ") && Contains("did you mean 'table-1'"));
-  CHECK_THAT(refusal("<!-- reproduced ratios table-1; a; bb --><!-- end -->"), Contains("no row 'bb'"));
-  CHECK_THAT(refusal("<!-- reproduced ratios table-1 --><!-- end -->"), Contains("ROW"));
-  CHECK_THAT(refusal("<!-- reproduced curve figure-2; volumes --><!-- end -->"), Contains("'volume'"));
-  CHECK_THAT(refusal("<!-- reproduced curve table-1; volume --><!-- end -->"), Contains("no curve"));
-  CHECK_THAT(refusal("<!-- reproduced tables table-1 --><!-- end -->"), Contains("did you mean 'table'"));
-  CHECK_THAT(refusal("<!-- reproduced table table-1; a --><!-- end -->"), Contains("table ID"));
+  const auto [passage, told] = GENERATE(table<const char*, Tells>({
+      {"<!-- reproduced table table-1 -->", Tells("card.md:2", "no end")},
+      {"<!-- reproduced table table-1", Tells("card.md:2")},
+      {"<!-- reproduced table table-1 --> <!-- reproduced table table-1 --><!-- end -->", Tells("no end")},
+      {"\n<!-- reproduced table table-2 --><!-- end -->", Tells("card.md:3", "mean", "table-1")},
+      {"<!-- reproduced ratios table-1; a; bb --><!-- end -->", Tells("no row", "bb")},
+      {"<!-- reproduced ratios table-1 --><!-- end -->", Tells("ROW")},
+      {"<!-- reproduced curve figure-2; volumes --><!-- end -->", Tells("volume")},
+      {"<!-- reproduced curve table-1; volume --><!-- end -->", Tells("no curve")},
+      {"<!-- reproduced tables table-1 --><!-- end -->", Tells("mean", "table")},
+      {"<!-- reproduced table table-1; a --><!-- end -->", Tells("table ID")},
+  }));
+  CAPTURE(passage);
+  CHECK_THROWS_MATCHES(
+      withReproducedPassages(std::string("one\n") + passage, "card.md", {aTable(), figure()}), Error, told);
 }
 
 TEST_CASE("kept results that no longer fit their text are told apart") {
-  const ReproducedResult kept = table();
+  const ReproducedResult kept = aTable();
   PublishedResult text = kept.published;
   for (const MeasuredRow& row : kept.rows) {
-    PublishedRow one;
+    PublishedRow& one = text.rows.emplace_back();
     one.name = row.name;
     one.published = row.published;
     one.over = row.over;
     one.absent = row.whyNot;
-    text.rows.push_back(one);
   }
   CHECK(staleReproductions({kept}, {text}).empty());
   const auto stale = [&](const auto& change) {
@@ -293,15 +292,14 @@ TEST_CASE("kept results that no longer fit their text are told apart") {
     const std::vector<std::string> found = staleReproductions({kept}, {changed});
     return found.size() == 1 ? found[0] : fmt::format("{} findings", found.size());
   };
-  CHECK_THAT(stale([](auto& t) { t.rows[1].published = 3.5; }), Contains("'b'") && Contains("3.5"));
-  CHECK_THAT(stale([](auto& t) { t.rows[1].name = "bb"; }), Contains("'bb'"));
-  CHECK_THAT(stale([](auto& t) { t.rows.pop_back(); }), Contains("5 rows"));
-  CHECK_THAT(stale([](auto& t) { t.rows[0].absent = "gone"; }), Contains("'a'") && Contains("absent"));
-  CHECK_THAT(stale([](auto& t) { t.rows[1].substitute = "another"; }), Contains("substitute"));
-  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }),
-             Contains("differences are not those of the text"));
-  CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Contains("panels"));
-  CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Contains("curves"));
-  CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is recorded"));
-  CHECK_THAT(staleReproductions({kept}, {})[0], Contains("no such text"));
+  CHECK_THAT(stale([](auto& t) { t.rows[1].published = 3.5; }), Tells("b", 3.5));
+  CHECK_THAT(stale([](auto& t) { t.rows[1].name = "bb"; }), Tells("bb"));
+  CHECK_THAT(stale([](auto& t) { t.rows.pop_back(); }), Tells("5 rows"));
+  CHECK_THAT(stale([](auto& t) { t.rows[0].absent = "gone"; }), Tells("a", "absent"));
+  CHECK_THAT(stale([](auto& t) { t.rows[1].substitute = "another"; }), Tells("substitute"));
+  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Tells("differences"));
+  CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Tells("panels"));
+  CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Tells("curves"));
+  CHECK_THAT(staleReproductions({}, {text})[0], Tells("table-1", "recorded"));
+  CHECK_THAT(staleReproductions({kept}, {})[0], Tells("table-1", "text"));
 }

@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/facts.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
@@ -81,34 +82,26 @@ TEST_CASE("Russian roulette leaves the furnace's radiance as it is") {
   CHECK(std::abs(full.mean - 20.0) < 4.0 * full.deviation);
 }
 
-TEST_CASE("the furnace's layers are the terms of the geometric series") {
-  const double albedo = 0.6;
-  ReferenceOptions options = quietly(64, 3);
-  options.roulette = false;
-  const LayeredImage image = renderReference(furnace(0.6f, 1.0f, 16), options);
-  CHECK(estimateOf(image, "direct").mean == Approx(1.0 + albedo).epsilon(0.002));
-  CHECK(estimateOf(image, "one_bounce_diffuse").mean == Approx(albedo * albedo).epsilon(0.004));
-  CHECK(estimateOf(image, "indirect_diffuse").mean ==
-        Approx(albedo * albedo * geometricSeries(albedo, 3)).epsilon(0.003));
-  CHECK(estimateOf(image, "full").mean == Approx(geometricSeries(albedo, 5)).epsilon(0.002));
-  CHECK(estimateOf(image, "one_bounce_glossy").mean == 0.0);
-  CHECK(estimateOf(image, "indirect_glossy").mean == 0.0);
-}
-
-TEST_CASE("N bounces of a furnace of albedo a give the partial geometric sum 1 + a + ... + a^(N+1)") {
+TEST_CASE("layers of a furnace are partial sums of its geometric series") {
   const double albedo = 0.6;
   ReferenceOptions options = quietly(64, 8);
   options.roulette = false;
   options.bounceLayers = {4, 1, 2, 4};
   const LayeredImage image = renderReference(furnace(0.6f, 1.0f, 16), options);
+  const auto mean = [&](const std::string& layer) { return estimateOf(image, layer).mean; };
+  CHECK(mean("direct") == Approx(1.0 + albedo).epsilon(0.002));
+  CHECK(mean("one_bounce_diffuse") == Approx(albedo * albedo).epsilon(0.004));
+  CHECK(mean("indirect_diffuse") == Approx(albedo * albedo * geometricSeries(albedo, 8)).epsilon(0.003));
+  CHECK(mean("full") == Approx(geometricSeries(albedo, 10)).epsilon(0.002));
+  for (const char* layer : {"one_bounce_glossy", "indirect_glossy"}) CHECK(mean(layer) == 0.0);
   for (const int bounces : {1, 2, 4}) {
     CAPTURE(bounces);
     const std::string layer = "bounces_" + std::to_string(bounces);
     // Emission, direct light, and N terms more.
-    CHECK(estimateOf(image, layer).mean == Approx(geometricSeries(albedo, bounces + 2)).epsilon(0.002));
-    CHECK(estimateOf(image, layer + "_diffuse").mean ==
+    CHECK(mean(layer) == Approx(geometricSeries(albedo, bounces + 2)).epsilon(0.002));
+    CHECK(mean(layer + "_diffuse") ==
           Approx(albedo * albedo * geometricSeries(albedo, bounces)).epsilon(0.003));
-    CHECK(estimateOf(image, layer + "_glossy").mean == 0.0);
+    CHECK(mean(layer + "_glossy") == 0.0);
     CHECK(estimateOf(image, layer).deviation > 0.0);
   }
   CHECK(image.layers.count("bounces_3") == 0);
@@ -166,9 +159,8 @@ TEST_CASE("a number of bounces beyond those of the paths has no layer") {
   for (const int wrong : {0, -1, 3}) {
     ReferenceOptions options = quietly(4, 2);
     options.bounceLayers = {1, wrong};
-    CHECK_THAT(
-        messageOf<Error>([&] { renderReference(furnace(0.5f, 1.0f, 4), options); }),
-        Catch::Matchers::Contains("a number of bounces with layers of its own is " + std::to_string(wrong)));
+    CHECK_THROWS_MATCHES(renderReference(furnace(0.5f, 1.0f, 4), options), Error,
+                         Tells("a number of bounces with layers of its own is " + std::to_string(wrong)));
   }
 }
 

@@ -5,6 +5,7 @@
 #include "lumivox/results/store.h"
 #include "lumivox/results/stress_cells.h"
 #include "stored_records.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
@@ -34,7 +35,7 @@ TEST_CASE("a cell of the stress battery comes back as it was stored") {
   numberless.id = 0;
   CHECK(stressCellJson(numberless) == stressCellJson(cell));
   CHECK(stressCellJson(stressCellFrom(stressCellJson(cell))) == stressCellJson(cell));
-  CHECK(messageOf<Error>([] { stressCellFrom("{\"case\": 1}"); }).find("is not a cell") != std::string::npos);
+  CHECK_THROWS_MATCHES(stressCellFrom("{\"case\": 1}"), Error, Tells("is not a cell"));
 }
 
 TEST_CASE("a newer cell takes the place of the older, and cells are chosen and removed by what they are") {

@@ -13,6 +13,7 @@
 #include "stress/cards.h"
 #include "stress/pass_parameters.h"
 #include "stress/protocol.h"
+#include "support/facts.h"
 #include "support/techniques.h"
 
 using namespace lumivox;
@@ -31,10 +32,52 @@ constexpr const char* kSeen =
     "  pass lights reflective_shadow_maps.render { }\n"
     "  pass gather reflective_shadow_maps.gather { gbuffer gbuffer  map lights.map }\n";
 
+/// A program that answers every request with the same cell, and does as it is told otherwise.
+class FalseWorkers {
+ public:
+  /// `script` is run by a shell for each line; $START is the number of the worker, from 1 on.
+  explicit FalseWorkers(const std::string& onStart, const std::string& script, bool software = true) {
+    StressCell cell;
+    cell.device = "a device";
+    cell.outcome = StressOutcome::stable;
+    cell.detail = "answered";
+    directory_.write("cell.json", stressCellJson(cell) + "\n");
+    directory_.write("ready.json", lineOf(WorkerDevice{"a device", "a driver", "spirv", software}) + "\n");
+    const std::string here = directory_.path().string();
+    directory_.write("worker.sh", "echo \"$*\" >> '" + here + "/starts'\nSTART=$(wc -l < '" + here +
+                                      "/starts')\n" + "answer() { cat '" + here + "/cell.json'; }\n" +
+                                      onStart + "\ncat '" + here + "/ready.json'\nwhile read -r line; do\n" +
+                                      script + "\ndone\n");
+    options.program = {"/bin/sh", (directory_.path() / "worker.sh").string()};
+    options.quick = true;
+    options.pipelines = {sourceDirectory() / "scenes/pipelines/direct_lighting.pipeline"};
+    options.families = {"light"};
+    options.store = directory_.path() / "cells.sqlite";
+  }
+  std::vector<StressCell> run() { return runStress(options, techniques()).cells; }
+  std::vector<StressCell> stored() const {
+    return ResultsStore(options.store, ResultsStore::Mode::read).stressCells();
+  }
+  std::vector<std::string> starts() const {
+    std::vector<std::string> lines;
+    std::istringstream stream(readFile(directory_.path() / "starts"));
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+  }
+  StressOptions options;
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+std::ptrdiff_t brokenOf(const std::vector<StressCell>& cells) {
+  return std::count_if(cells.begin(), cells.end(),
+                       [](const StressCell& cell) { return cell.outcome == StressOutcome::broken; });
+}
+
 }  // namespace
 
-TEST_CASE(
-    "a pipeline stands for the technique that its name begins with, else for the one behind its light") {
+TEST_CASE("a pipeline stands for the technique of its name, else for that behind its light") {
   const auto subject = [](const std::string& file, const std::string& outputs) {
     return techniqueOf(named(file, kSeen + outputs), techniques());
   };
@@ -78,34 +121,34 @@ TEST_CASE("a card's list below its heading explains cases, by patterns and for s
 }
 
 TEST_CASE("numbers in bold are what cells measure, with their spread") {
-  const auto numbers = [](const std::string& text) { return boldNumbers(text); };
-  CHECK(numbers("0.35 of the light, *0.2* at 16").empty());
-  const std::vector<CardNumber> several = numbers(
-      "**0.35** of the light, **0.31..0.41** turned, **0.22 ± 0.03** there, **1.7e5** as printed, **bold**");
-  REQUIRE(several.size() == 4);
-  const auto admits = [&](std::size_t index, double value, double uncertainty = 0.0) {
-    return several.at(index).admits({value, uncertainty});
-  };
-  // Within a twentieth, or within one in the last digit where that is more.
-  CHECK(admits(0, 0.366));
-  CHECK_FALSE(admits(0, 0.37));
-  CHECK_FALSE(admits(0, 0.8));
-  CHECK_FALSE(admits(0, 0.33));
-  CHECK(admits(0, 0.39, 0.01));  // three standard uncertainties of its own
-  CHECK_FALSE(admits(0, 0.40, 0.01));
-  CHECK(admits(1, 0.31));
-  CHECK(admits(1, 0.414));
-  CHECK_FALSE(admits(1, 0.42));
-  CHECK_FALSE(admits(1, 0.30));
-  CHECK(admits(2, 0.249));
-  CHECK_FALSE(admits(2, 0.26));
-  CHECK(admits(3, 1.75e5));
-  CHECK_FALSE(admits(3, 2e5));
-  CHECK(numbers("**0.02**").at(0).admits({0.029, 0.0}));
-  CHECK_FALSE(numbers("**0.02**").at(0).admits({0.031, 0.0}));
-  CHECK(numbers("**3e2**").at(0).admits({399.0, 0.0}));
-  CHECK_FALSE(numbers("**3.0e2**").at(0).admits({320.0, 0.0}));
-  CHECK(numbers("**0.5..0.4**").empty());
+  // Within a twentieth, or within one in the last digit where that is more; three standard uncertainties of
+  // its own.
+  const auto [text, value, uncertainty, admits] = GENERATE(table<const char*, double, double, bool>({
+      {"**0.35** of the light", 0.366, 0.0, true},
+      {"**0.35** of the light", 0.37, 0.0, false},
+      {"**0.35** of the light", 0.8, 0.0, false},
+      {"**0.35** of the light", 0.33, 0.0, false},
+      {"**0.35** of the light", 0.39, 0.01, true},
+      {"**0.35** of the light", 0.40, 0.01, false},
+      {"**0.31..0.41** turned", 0.31, 0.0, true},
+      {"**0.31..0.41** turned", 0.414, 0.0, true},
+      {"**0.31..0.41** turned", 0.42, 0.0, false},
+      {"**0.31..0.41** turned", 0.30, 0.0, false},
+      {"**0.22 ± 0.03** there", 0.249, 0.0, true},
+      {"**0.22 ± 0.03** there", 0.26, 0.0, false},
+      {"**1.7e5** as printed", 1.75e5, 0.0, true},
+      {"**1.7e5** as printed", 2e5, 0.0, false},
+      {"**0.02**", 0.029, 0.0, true},
+      {"**0.02**", 0.031, 0.0, false},
+      {"**3e2**", 399.0, 0.0, true},
+      {"**3.0e2**", 320.0, 0.0, false},
+  }));
+  CAPTURE(text, value);
+  const std::vector<CardNumber> numbers = boldNumbers(text);
+  REQUIRE(numbers.size() == 1);
+  CHECK(numbers[0].admits({value, uncertainty}) == admits);
+  CHECK(boldNumbers("0.35 of the light, *0.2* at 16, **bold**, **0.5..0.4**").empty());
+  CHECK(boldNumbers("**0.35** of the light, **0.31..0.41** turned").size() == 2);
 }
 
 TEST_CASE("a row of a card explains a cell only when it names the number that the cell measures") {
@@ -155,53 +198,6 @@ TEST_CASE("every row of every card names its cases, a measured number and the re
   CHECK(count > 50);
 }
 
-namespace {
-
-/// A program that answers every request with the same cell, and does as it is told otherwise.
-class FalseWorkers {
- public:
-  /// `script` is run by a shell for each line; $START is the number of the worker, from 1 on.
-  explicit FalseWorkers(const std::string& onStart, const std::string& script, bool software = true) {
-    StressCell cell;
-    cell.device = "a device";
-    cell.outcome = StressOutcome::stable;
-    cell.detail = "answered";
-    directory_.write("cell.json", stressCellJson(cell) + "\n");
-    directory_.write("ready.json", lineOf(WorkerDevice{"a device", "a driver", "spirv", software}) + "\n");
-    const std::string here = directory_.path().string();
-    directory_.write("worker.sh", "echo \"$*\" >> '" + here + "/starts'\nSTART=$(wc -l < '" + here +
-                                      "/starts')\n" + "answer() { cat '" + here + "/cell.json'; }\n" +
-                                      onStart + "\ncat '" + here + "/ready.json'\nwhile read -r line; do\n" +
-                                      script + "\ndone\n");
-    options.program = {"/bin/sh", (directory_.path() / "worker.sh").string()};
-    options.quick = true;
-    options.pipelines = {sourceDirectory() / "scenes/pipelines/direct_lighting.pipeline"};
-    options.families = {"light"};
-    options.store = directory_.path() / "cells.sqlite";
-  }
-  std::vector<StressCell> run() { return runStress(options, techniques()).cells; }
-  std::vector<StressCell> stored() const {
-    return ResultsStore(options.store, ResultsStore::Mode::read).stressCells();
-  }
-  std::vector<std::string> starts() const {
-    std::vector<std::string> lines;
-    std::istringstream stream(readFile(directory_.path() / "starts"));
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-  }
-  StressOptions options;
-
- private:
-  TemporaryDirectory directory_;
-};
-
-std::ptrdiff_t brokenOf(const std::vector<StressCell>& cells) {
-  return std::count_if(cells.begin(), cells.end(),
-                       [](const StressCell& cell) { return cell.outcome == StressOutcome::broken; });
-}
-
-}  // namespace
-
 TEST_CASE("a worker that is lost is one broken cell, and so is one that does not start in its place") {
   FalseWorkers workers("if [ $START -eq 2 ]; then echo 'no device' >&2; exit 3; fi",
                        "if [ $START -eq 1 ]; then exit 4; fi; answer");
@@ -209,9 +205,9 @@ TEST_CASE("a worker that is lost is one broken cell, and so is one that does not
   const std::vector<StressCell> cells = workers.run();
   REQUIRE(cells.size() > 3);
   CHECK(brokenOf(cells) == 2);
-  CHECK(cells[0].detail.find("its process ended with exit code 4") != std::string::npos);
+  CHECK_THAT(cells[0].detail, Tells("its process ended with exit code 4"));
   CHECK(cells[0].device == "a device");
-  CHECK(cells[1].detail.find("exit code 3: no device") != std::string::npos);
+  CHECK_THAT(cells[1].detail, Tells("exit code 3: no device"));
   CHECK(cells[2].detail == "answered");
 }
 
@@ -220,7 +216,7 @@ TEST_CASE("a worker that answers nonsense is one broken cell") {
   workers.options.workers = 1;
   const std::vector<StressCell> cells = workers.run();
   CHECK(brokenOf(cells) == 1);
-  CHECK(cells[0].detail.find("did not answer with a cell") != std::string::npos);
+  CHECK_THAT(cells[0].detail, Tells("did not answer with a cell"));
 }
 
 TEST_CASE("when workers no longer start, what was not run says so and takes no stored cell's place") {
@@ -230,13 +226,13 @@ TEST_CASE("when workers no longer start, what was not run says so and takes no s
   REQUIRE(cells.size() > 4);  // one is lost, three do not start, and the rest is not run
   CHECK(brokenOf(cells) == static_cast<std::ptrdiff_t>(cells.size()));
   CHECK(workers.starts().size() == 4);
-  CHECK(cells.back().detail.find("not run: the last 3 workers did not start") != std::string::npos);
+  CHECK_THAT(cells.back().detail, Tells("not run: the last 3 workers did not start"));
   CHECK(workers.stored().size() == 4);
 }
 
 TEST_CASE("without a single worker there is no battery") {
   FalseWorkers workers("echo 'no device at all' >&2; exit 3", "answer");
-  CHECK(messageOf<Error>([&] { workers.run(); }).find("no device at all") != std::string::npos);
+  CHECK_THROWS_MATCHES(workers.run(), Error, Tells("no device at all"));
 }
 
 TEST_CASE("one graphics device bears one worker, and several share the memory") {
@@ -273,31 +269,26 @@ TEST_CASE("parameters of passes that a text leaves free are found and set") {
                                  "  pass gather reflective_shadow_maps.gather { gbuffer gbuffer  "
                                  "map lights.map  samples $samples }\n"
                                  "  output indirect gather.diffuse");
-  const std::vector<PassParameter> free = freePassParameters(text, techniques());
-  const auto find = [&](const std::string& name) {
-    return std::find_if(free.begin(), free.end(), [&](const PassParameter& one) { return one.name == name; });
+  const auto find = [](const Pipeline& in, const std::string& name) {
+    const std::vector<PassParameter> free = freePassParameters(in, techniques());
+    const auto found =
+        std::find_if(free.begin(), free.end(), [&](const PassParameter& one) { return one.name == name; });
+    return found == free.end() ? std::nullopt : std::optional(*found);
   };
-  REQUIRE(find("shadow.size") != free.end());
-  CHECK(find("shadow.size")->value == "64");
-  CHECK(find("shadow.size")->low == 16);
-  CHECK(find("gather.samples") == free.end());  // a parameter of the pipeline stands for it
+  REQUIRE(find(text, "shadow.size"));
+  CHECK(find(text, "shadow.size")->value == "64");
+  CHECK(find(text, "shadow.size")->low == 16);
+  CHECK_FALSE(find(text, "gather.samples"));  // a parameter of the pipeline stands for it
 
-  ParameterValues values;
+  ParameterValues values, unknown;
   values["shadow.size"].number = 32;
   values["lights.area_samples"].number = 3;
   const Pipeline set = withPassParameters(text, values);
-  const std::vector<PassParameter> now = freePassParameters(set, techniques());
-  const auto valueOf = [&](const std::string& name) {
-    return std::find_if(now.begin(), now.end(), [&](const PassParameter& one) { return one.name == name; })
-        ->value;
-  };
-  CHECK(valueOf("shadow.size") == "32");
-  CHECK(valueOf("lights.area_samples") == "3");
+  CHECK(find(set, "shadow.size").value().value == "32");
+  CHECK(find(set, "lights.area_samples").value().value == "3");
   CHECK_NOTHROW(checkPipeline(set, techniques()));
-  ParameterValues unknown;
   unknown["absent.size"].number = 1;
-  CHECK(messageOf<Error>([&] { withPassParameters(text, unknown); }).find("absent.size") !=
-        std::string::npos);
+  CHECK_THROWS_MATCHES(withPassParameters(text, unknown), Error, Tells("absent.size"));
 }
 
 TEST_CASE("requests to a worker come back as they were written") {
@@ -316,7 +307,7 @@ TEST_CASE("requests to a worker come back as they were written") {
   CHECK(back.content->shot.passParameters == request.shot.passParameters);
   CHECK(lineOf(*requestOf(lineOf(CellRequest{"b.pipeline", "a_case", false, "c.png"})).cell) ==
         lineOf(CellRequest{"b.pipeline", "a_case", false, "c.png"}));
-  CHECK(messageOf<Error>([] { requestOf("{}"); }).find("no request") != std::string::npos);
+  CHECK_THROWS_MATCHES(requestOf("{}"), Error, Tells("no request"));
 }
 
 TEST_CASE("a child answers line by line, tells how it ended, and dies with what it started") {
@@ -331,7 +322,7 @@ TEST_CASE("a child answers line by line, tells how it ended, and dies with what 
   Child shell({"/bin/sh", "-c", "echo \"$GREETING\"; echo lost >&2; kill -9 $$"}, {"GREETING=hello"});
   CHECK(shell.receive(10.0).line == "hello");
   CHECK(shell.receive(10.0).state == Child::State::ended);
-  CHECK(shell.ending().find("killed by signal 9") != std::string::npos);
+  CHECK_THAT(shell.ending(), Tells("killed by signal 9"));
   CHECK(shell.lastWords() == "lost");
   shell.send("nobody hears");  // and nobody is killed by it
 
@@ -339,6 +330,5 @@ TEST_CASE("a child answers line by line, tells how it ended, and dies with what 
   const auto start = std::chrono::steady_clock::now();
   { Child nested({"/bin/sh", "-c", "sleep 60 & sleep 60"}, {}); }
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
-  CHECK(messageOf<Error>([] { Child({"/no/such/program"}, {}); }).find("/no/such/program") !=
-        std::string::npos);
+  CHECK_THROWS_MATCHES(Child({"/no/such/program"}, {}), Error, Tells("/no/such/program"));
 }

@@ -1,14 +1,24 @@
 // The pass that traces paths through bits, on what tests make by hand.
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "support/near_field.h"
 
 namespace lumivox::test::voxel_paths {
 
 using near_field::Gatherer;
 
-inline Gatherer tracer(const BinaryGrid& bits, const Scene& scene = SceneBuilder().scene, int side = 8) {
-  return Gatherer(bits, scene, side, side, "voxel_path_tracing", "trace");
+/// `specular`: albedo and exponent of a Phong lobe; without one the surface has none.
+inline Gatherer tracer(const BinaryGrid& bits, const glm::vec3& position, const glm::vec3& normal,
+                       const Scene& scene = SceneBuilder().scene, float diffuse = 0.5f,
+                       const glm::vec4& specular = glm::vec4(0.0f)) {
+  Gatherer result(bits, scene, 8, 8, "voxel_path_tracing.trace");
+  GBuffer seen = gbufferAt({position, normal, glm::vec3(diffuse), specular});
+  if (specular == glm::vec4(0.0f)) seen.specular = nullptr;
+  result.in("gbuffer", seen);
+  return result;
 }
 
 /// The shell of a cube of so many voxels a side.
@@ -21,32 +31,38 @@ inline VoxelSet shellOf(int side) {
   return set;
 }
 
-inline gpu::TextureRef volumeOf(const glm::ivec3& size, const std::vector<glm::vec4>& values) {
-  auto texture = std::make_shared<gpu::Texture>(
-      device(),
-      gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::rgba32f, size.x, size.y, size.z, 1},
-      "test volume");
-  texture->upload(0, std::as_bytes(std::span(values)));
-  return texture;
+/// Of each voxel, x first.
+inline AttributeGrid attributesWhere(const glm::ivec3& size, float albedo,
+                                     const std::function<glm::vec3(const glm::ivec3&)>& normalAt) {
+  std::vector<float> albedos, normals;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const glm::vec3 normal = normalAt({x, y, z});
+        const bool is = normal != glm::vec3(0.0f);
+        for (int c = 0; c < 3; ++c) {
+          normals.push_back(normal[c]);
+          albedos.push_back(is ? albedo : 0.0f);
+        }
+        normals.push_back(0.0f);
+        albedos.push_back(is ? 1.0f : 0.0f);
+      }
+  return {{glm::vec3(0.0f), 1.0f, size},
+          textureOf(volumeOf(size), albedos),
+          textureOf(volumeOf(size), normals),
+          nullptr};
 }
 
 /// Voxels of the shell look inwards, and reflect so much.
-inline AttributeGrid attributesOf(int side, float albedo) {
-  const glm::ivec3 size(side);
-  std::vector<glm::vec4> albedos, normals;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const glm::ivec3 at(x, y, z);
-        glm::vec4 normal(0.0f);
-        for (int axis = 0; axis < 3 && normal == glm::vec4(0.0f); ++axis) {
-          if (at[axis] == 0) normal[axis] = 1.0f;
-          if (at[axis] == side - 1) normal[axis] = -1.0f;
-        }
-        normals.push_back(normal);
-        albedos.push_back(normal == glm::vec4(0.0f) ? glm::vec4(0.0f) : glm::vec4(glm::vec3(albedo), 1.0f));
-      }
-  return {{glm::vec3(0.0f), 1.0f, size}, volumeOf(size, albedos), volumeOf(size, normals), nullptr};
+inline AttributeGrid attributesOfShell(int side, float albedo) {
+  return attributesWhere(glm::ivec3(side), albedo, [side](const glm::ivec3& at) {
+    glm::vec3 normal(0.0f);
+    for (int axis = 0; axis < 3 && normal == glm::vec3(0.0f); ++axis) {
+      if (at[axis] == 0) normal[axis] = 1.0f;
+      if (at[axis] == side - 1) normal[axis] = -1.0f;
+    }
+    return normal;
+  });
 }
 
 /// A map that makes every surface around shine with this radiance and reflect so much.
@@ -56,7 +72,7 @@ inline ReflectiveShadowMap shiningAll(float radiance, float albedo, const glm::d
   builder.light(LightKind::point, glm::vec3(1.0f), from);
   ReflectiveShadowMap map = near_field::mapOf(builder.scene, 4, glm::vec4(glm::vec3(from), 1.0f),
                                               {0, 1, 0, 1}, near_field::fluxOf(radiance));
-  map.albedo = near_field::filledLayers(4, map.layerCount, glm::vec4(glm::vec3(albedo), 1.0f));
+  map.albedo = filled(layers(4, 4, map.layerCount), glm::vec4(glm::vec3(albedo), 1.0f));
   return map;
 }
 
