@@ -144,20 +144,21 @@ TEST_CASE("a ray that would begin in a set voxel begins behind it, or ends at on
 
 TEST_CASE("what does not belong together is refused with what was expected") {
   const BinaryGrid bits = gridOf(shellOf(kRoom));
-  const auto refused = [&](const char* input, auto port, const Settings& settings, const Tells& tells) {
+  const auto refused = [&](const auto& give, const Settings& settings, const Tells& tells) {
     Gatherer paths = tracer(bits, kMiddle, kUp);
-    if (input != nullptr) paths.in(input, port);
+    give(paths);
     paths.with(settings);
     CHECK_THROWS_MATCHES(paths.run(), Error, tells);
   };
-  refused(nullptr, 0, {}, Tells("'bounces'", 2, "'attributes'"));
-  refused("attributes", attributesOfShell(kRoom + 1, 0.5f), {}, Tells("'bits'", "'attributes'"));
+  refused([](Gatherer&) {}, {}, Tells("'bounces'", 2, "'attributes'"));
+  refused([](Gatherer& paths) { paths.in("attributes", attributesOfShell(kRoom + 1, 0.5f)); }, {},
+          Tells("'bits'", "'attributes'"));
   ReflectiveShadowMap map = shiningAll(1.0f, 0.5f, kMiddle);
   map.albedo = nullptr;
-  refused("map", map, {{"bounces", 1}}, Tells("'map'", "'surfaces'"));
+  refused([&](Gatherer& paths) { paths.map(map); }, {{"bounces", 1}}, Tells("'map'", "'surfaces'"));
   map = shiningAll(1.0f, 0.5f, kMiddle);
   const std::vector<LightSampleData> lights(70000, map.lights->downloadValues<LightSampleData>().front());
   map.lights = bufferOf(lights);
   map.lightCount = static_cast<int>(lights.size());
-  refused("map", map, {{"bounces", 1}}, Tells(70000));
+  refused([&](Gatherer& paths) { paths.map(map); }, {{"bounces", 1}}, Tells(70000));
 }
