@@ -19,31 +19,22 @@ struct Known {
   Seen seen;
   ReflectiveShadowMap map;
   AttributeGrid attributes;
-  Known(const std::string& name, int resolution, int side) : seen(name, resolution, side) {
-    PassHarness lights(device(), techniques(), "reflective_shadow_maps", "render", seen.scene, seen.snapshot),
-        voxels(device(), techniques(), "voxelization", "conservative", seen.scene, seen.snapshot),
-        average(device(), techniques(), "voxelization", "average", seen.scene, seen.snapshot);
-    lights.run();
-    map = lights.output<ReflectiveShadowMap>("surfaces");
-    voxels.setParameter("resolution", resolution);
-    voxels.run();
-    average.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-    average.run();
-    attributes = average.output<AttributeGrid>("attributes");
-  }
+  Known(const std::string& name, int resolution, int side)
+      : seen(name, resolution, side),
+        map(LonePass("reflective_shadow_maps.render", seen.scene).out<ReflectiveShadowMap>("surfaces")),
+        attributes(LonePass("voxelization.average", seen.scene)
+                       .in("fragments", fragmentsIn(seen.scene, {{"resolution", resolution}}))
+                       .out<AttributeGrid>("attributes")) {}
 };
 
 std::vector<float> traced(const Known& known, int bounces, int samples) {
-  PassHarness trace(device(), techniques(), "voxel_path_tracing", "trace", known.seen.scene,
-                    known.seen.snapshot);
-  trace.setInput("gbuffer", known.seen.gbuffer);
-  trace.setInput("bits", known.seen.bits);
-  trace.setInput("map", known.map);
-  trace.setInput("attributes", known.attributes);
-  trace.setParameter("samples", samples);
-  trace.setParameter("bounces", bounces);
-  trace.run();
-  return trace.output<Image>("arriving").texture->downloadFloats(0);
+  GBuffer gbuffer = known.seen.gbuffer;
+  return LonePass("voxel_path_tracing.trace", known.seen.scene, {{"samples", samples}, {"bounces", bounces}})
+      .in("gbuffer", gbuffer)
+      .in("bits", known.seen.bits)
+      .in("map", known.map)
+      .in("attributes", known.attributes)
+      .floats("arriving");
 }
 
 double reachOfPlane(const glm::dvec3& normal) {
