@@ -99,19 +99,6 @@ std::string Statement::bytes(int column) const {
              : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
 }
 
-nlohmann::ordered_json Statement::json(int column, bool isText) const {
-  switch (sqlite3_column_type(statement_.get(), column)) {
-    case SQLITE_NULL:
-      return nullptr;
-    case SQLITE_INTEGER:
-      return integer(column);
-    case SQLITE_FLOAT:
-      return number(column);
-    default:
-      return isText ? nlohmann::ordered_json(text(column)) : nlohmann::ordered_json::parse(text(column));
-  }
-}
-
 void Statement::bindJson(int index, const nlohmann::ordered_json& json) {
   if (json.is_number_float() || json.is_null())
     bindOne(index, json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>());

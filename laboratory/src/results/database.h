@@ -44,8 +44,6 @@ class Statement {
   double number(int column) const;
   std::string text(int column) const;
   std::string bytes(int column) const;
-  /// A number, null or a text: itself, or the JSON in it.
-  nlohmann::ordered_json json(int column, bool isText) const;
   /// Error for a value that is not what it should be.
   [[noreturn]] void fail(const std::string& why) const;
 

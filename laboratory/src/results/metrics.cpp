@@ -1,6 +1,7 @@
 // The numbers of an error by name, so that the store's schema does not change with every metric.
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "lumivox/results/records.h"
 
@@ -35,7 +36,7 @@ void visitMetrics(Error& error, Visit visit) {
 }
 
 /// Such that no spread over seeds belongs to them.
-bool isCount(const std::string& metric) {
+bool isCount(std::string_view metric) {
   return metric == "exposure_ev" || metric == "noise_floor" || metric.starts_with("non_finite");
 }
 
@@ -43,9 +44,9 @@ bool isCount(const std::string& metric) {
 
 std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   std::vector<NamedMetric> metrics;
-  visitMetrics(error, [&](const std::string& name, auto value, double uncertainty, double ofNothing) {
-    const bool enough =
-        error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed || name == "rmse");
+  visitMetrics(error, [&](const char* name, auto value, double uncertainty, double ofNothing) {
+    const bool enough = error.enoughSeeds() &&
+                        (error.deterministic || error.everyMetricPerSeed || name == std::string_view("rmse"));
     metrics.push_back({name, {static_cast<double>(value), uncertainty, isCount(name) || enough}, ofNothing});
   });
   return metrics;
@@ -53,14 +54,13 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
 
 bool setMetric(ComponentError& error, const NamedMetric& metric) {
   bool known = false;
-  visitMetrics(error,
-               [&]<class T>(const std::string& name, T& value, double& uncertainty, double& ofNothing) {
-                 if (metric.name != name) return;
-                 value = static_cast<T>(metric.measured.value);
-                 uncertainty = metric.measured.uncertainty;
-                 ofNothing = metric.ofNothing;
-                 known = true;
-               });
+  visitMetrics(error, [&]<class T>(const char* name, T& value, double& uncertainty, double& ofNothing) {
+    if (metric.name != name) return;
+    value = static_cast<T>(metric.measured.value);
+    uncertainty = metric.measured.uncertainty;
+    ofNothing = metric.ofNothing;
+    known = true;
+  });
   if (metric.name == "noise_floor") error.parts.referenceNoise = metric.measured.value;
   return known;
 }

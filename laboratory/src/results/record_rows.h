@@ -2,6 +2,8 @@
 // each list and map.
 #pragma once
 
+#include <cstdlib>
+
 #include "results/database.h"
 #include "results/field_json.h"
 
@@ -19,7 +21,7 @@ void eachColumn(T& record, auto&& visit) {
     using Member = std::remove_cvref_t<M>;
     if constexpr (std::same_as<Member, TimingStatistics>) {
       fields(member, [&](const Field& part, auto& number) {
-        visit(fmt::format("{}_{}", field.column, part.name), part.about == nullptr ? nullptr : field.about,
+        visit(std::string(field.column) + "_" + part.name, part.about == nullptr ? nullptr : field.about,
               number);
       });
     } else if constexpr (!kIsDerived<Member>) {
@@ -70,9 +72,18 @@ T recordAt(const Statement& row, int column) {
   T record;
   try {
     eachColumn(record, [&]<class M>(const std::string&, const char*, M& value) {
-      constexpr bool kIsText = std::same_as<M, std::string> || std::same_as<M, StressOutcome>;
-      if (const Json json = row.json(column++, kIsText); std::same_as<M, double> || !json.is_null())
-        read(json, value);
+      const int at = column++;
+      if constexpr (std::same_as<M, double>) {
+        value = row.number(at);
+      } else if constexpr (std::same_as<M, std::uint64_t>) {
+        value = std::strtoull(row.text(at).c_str(), nullptr, 10);  // from 2^63 on it is stored below 0
+      } else if constexpr (std::integral<M>) {
+        value = static_cast<M>(row.integer(at));
+      } else if constexpr (std::same_as<M, std::string>) {
+        value = row.text(at);
+      } else if (const std::string text = row.text(at); !text.empty() && text != "[]" && text != "{}") {
+        read(std::same_as<M, StressOutcome> ? Json(text) : Json::parse(text), value);
+      }
     });
   } catch (const Json::exception& error) {
     row.fail(error.what());
