@@ -29,13 +29,13 @@ class InjectPass : public Pass {
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it the grid is dark but opaque"};
   Param<Grids> grids{this, "grids", Grids::one,
-                     "for voxels that look the same from all sides, or for those of six directional grids"};
+                     "grids of averages; one: for isotropic voxels; six: for six directional grids"};
   Param<float> white{
       this, "white", 0.0f, within(0.0f, 1e12f),
-      "radiance that the largest byte stands for, W/(sr m^2); brighter voxels have no more; 0: what no fragment exceeds, which beside a point light leaves the bytes of all others dark"};
+      "radiance of the largest byte, at which brighter voxels are clamped, W/(sr m^2); 0: that of the brightest fragment, which near a point light leaves all others dark"};
   Param<float> ambient{this, "ambient", 0.0f, within(0.0f, 1e9f),
                        "irradiance that all surfaces receive besides that of the lights, W/m^2 (Fig. 66)"};
-  Out<VoxelAverages> averages{this, "averages", "what depends on the order of the fragments"};
+  Out<VoxelAverages> averages{this, "averages", "running averages, which depend on the order of the fragments"};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
 
@@ -98,7 +98,7 @@ std::vector<gpu::TextureRef> corrected(PassContext& frame, const VoxelAverages& 
 class CorrectOpacityPass : public Pass {
   In<VoxelAverages> averages{this, "averages", "those of one grid"};
   Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
-  Out<RadianceGrid> radiance{this, "radiance", "the finest level; all that holds anything is opaque",
+  Out<RadianceGrid> radiance{this, "radiance", "the finest level; every voxel with a fragment is opaque",
                              Levels::finest};
 
   void run(PassContext& frame) override {
@@ -115,7 +115,7 @@ class CorrectOpacityDirectionalPass : public Pass {
   In<VoxelAverages> averages{this, "averages", "those of six grids"};
   Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
   Out<DirectionalRadianceGrid> radiance{
-      this, "radiance", "the finest level; all that holds anything is opaque", Levels::finest};
+      this, "radiance", "the finest level; every voxel with a fragment is opaque", Levels::finest};
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result;
@@ -133,7 +133,7 @@ void addInject(TechniqueRegistry& registry) {
   registry.add<CorrectOpacityPass>("correct_opacity",
                                    "Opacities in place of the counts of fragments (Listing 4.10)");
   registry.add<CorrectOpacityDirectionalPass>("correct_opacity_directional",
-                                              "The same of six directional grids (Sec. 4.2.1, Table 1)");
+                                              "Opacities in place of the counts of fragments, for six directional grids (Sec. 4.2.1, Table 1)");
 }
 
 }  // namespace lumivox::thesis_cone_tracing

@@ -77,7 +77,7 @@ class OctreePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   Param<OctreeNodes::Voxels> voxels{
       this, "voxels", OctreeNodes::Voxels::inLeaves,
-      "where voxels lie: in the eighths of leaves, with only the nodes that fragments lie in; or at the corners of nodes (Crassin et al. 2011)"};
+      "places of voxels; in_leaves: in the eighths of leaves, with only those nodes that contain fragments; at_corners: at the corners of nodes (Crassin et al. 2011)"};
   Out<OctreeNodes> tree{this, "tree", "nodes, and places for their bricks"};
 
   /// What the tree needs: the most that any frame wanted, which is what later ones get.

@@ -122,7 +122,7 @@ class OctreeMipmapPass : public Pass {
   In<OctreeBricks> radiance{this, "radiance", "the finest level"};
   Param<Borders> borders{
       this, "borders", Borders::averaged,
-      "how bricks complete those voxels of which their neighbours know a part: parts are means, and averaged; or added to the right and copied to the left (Crassin et al. 2011)"};
+      "how bricks combine a border voxel of which each holds a part; averaged: parts are means, and are averaged; added: parts are added to the right and copied to the left (Crassin et al. 2011)"};
   Out<OctreeBricks> mips{this, "mips", "the same octree with values at all depths", Levels::all};
 
   void run(PassContext& frame) override {
@@ -136,7 +136,7 @@ class OctreeRelightPass : public Pass {
   In<ReflectiveShadowMap> photons{this, "photons", Presence::optional,
                                   "what the lights see; without it the octree stays as it is"};
   In<OctreeBricks> octree{this, "octree", "surfaces, of which the opacity is kept", Levels::all};
-  In<VoxelFragments> fragments{this, "fragments", "what the octree was made of: its colours and normals"};
+  In<VoxelFragments> fragments{this, "fragments", "the surface samples of the octree: their colours and normals"};
   Out<OctreeBricks> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                              Levels::all};
 

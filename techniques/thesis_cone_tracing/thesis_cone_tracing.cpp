@@ -13,7 +13,7 @@ void addGather(TechniqueRegistry& registry);
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::thesis_cone_tracing;
-  registry.describe("Voxel cone tracing as printed: Listings 4.8 to 4.25, slips included",
+  registry.describe("Voxel cone tracing as printed: Listings 4.8 to 4.25, errors included",
                     "thesis Gomes 2015, Sec. 4.2; Crassin et al. 2011");
   addInject(registry);
   addMipmap(registry);

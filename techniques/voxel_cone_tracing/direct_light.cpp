@@ -11,21 +11,20 @@ namespace inject = shaders::voxel_cone_tracing::inject;
 DirectLight::DirectLight(Pass* pass)
     : shadow(pass, "shadow", Presence::optional,
              "lights and their visibility; without it the voxels are dark but opaque"),
-      media(pass, "media", Presence::optional,
-            "media between lights and surfaces, which dim the light on its way"),
+      media(pass, "media", Presence::optional, "media that attenuate light between lights and surfaces"),
       mediumSteps(pass, "medium_steps", 16, within(1, 1024),
-                  "most steps through a medium that varies, towards a light"),
+                  "largest number of steps through a heterogeneous medium towards a light"),
       ambient(
           pass, "ambient", 0.0f, within(0.0f, 1e9f),
-          "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
+          "irradiance that all surfaces receive besides that of the lights, W/m^2, so that cones also see unlit surfaces (thesis Fig. 66)"),
       samples(
           pass, "light_samples", 1, within(1, 256),
-          "points of a fragment's plane in its voxel that are lit, so that the edge of a shadow may lie in a voxel"),
+          "lit points of a fragment's plane in its voxel, so that a shadow's edge within a voxel is resolved"),
       twoSided(pass, "two_sided", true,
                "light on the back of a triangle counts; off, as published: only on the front"),
       emission(
           pass, "emission", false,
-          "surfaces that emit light shine in their voxels: for who looks at the voxels themselves, as 'lens' does; cones of 'gather' would take the direct light of lamps for indirect light") {
+          "voxels store emitted light too, for passes that show the voxels themselves, as 'lens' does; cones of 'gather' would take direct light of lamps for indirect light") {
 }
 
 float DirectLight::brightest(PassContext& frame, float nearest) const {

@@ -84,21 +84,20 @@ class ClipmapPass : public Pass {
   DirectLight light{this};
   Param<int> resolution{this, "resolution", 64, within(8, 512), "voxels along each side of a level"};
   Param<int> levels{this, "levels", 3, within(1, 10),
-                    "around the camera, each with voxels of twice the size"};
+                    "number of levels around the camera; each has voxels twice as large as the one inside it"};
   Param<float> extent{
       this, "extent",
       0.0f, within(0.0f, 1e9f),
       "m",  "side of the finest level; 0: so that the coarsest level contains the whole scene"};
   Param<Coverage> coverage{
       this, "coverage", Coverage::touched,
-      "what triangles cover: each voxel that they touch, as in the other stores; or, as published, opacity by eight samples of each side of a voxel and emittance by more where a triangle is small"};
+      "coverage of a voxel; touched: each voxel that a triangle touches, as in the other stores; samples: opacity by eight samples of each side of a voxel, and emittance by more where a triangle is small, as published"};
   Param<float> thickness{
       this, "thickness", 0.5f, within(0.0f, 1.0f),
-      "with 'samples', how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+      "with 'samples': thickness of a surface seen from the side, in voxels; 0: none"};
   Param<int> supersampling{this, "supersampling", 4, within(1, 16),
-                           "with 'samples', most pixels along a voxel for triangles that few samples meet; "
-                           "the largest power of two that is no more; 1: none"};
-  Param<Precision> precision{this, "precision", Precision::float_, "of the voxels: 16 or 8 bytes a face"};
+                           "with 'samples': largest number of pixels along a voxel for triangles that few samples hit, rounded down to a power of two; 1: no supersampling"};
+  Param<Precision> precision{this, "precision", Precision::float_, "numbers in the voxels; float: 16 bytes a face; half: 8"};
   Out<RadianceClipmap> radiance{this, "radiance",
                                 "radiance that the faces of voxels reflect, and opacity; levels as voxelized",
                                 Levels::finest};
@@ -417,12 +416,12 @@ class ClipmapFilterPass : public Pass {
   In<RadianceClipmap> radiance{this, "radiance", "levels as voxelized"};
   Param<float> ramp{
       this, "ramp", 0.25f, within(0.0f, 1.0f),
-      "share of the way from the border of the finer level to its middle over which a level goes over from what was voxelized to what the finer one makes of it; 0: with a leap"};
+      "width of the transition from voxelized to filtered voxels within a level, as a share of the distance from the finer level's border to its middle; 0: no transition"};
   Param<float> border{
       this, "border", 0.25f, within(0.0f, 1.0f),
-      "share of that way over which cones go on to the next coarser level; 0: within a voxel"};
+      "width of the transition of cones to the next coarser level, as a share of the same distance; 0: within a voxel"};
   Out<RadianceClipmap> mips{
-      this, "mips", "the same, where levels have the finer one's voxels, and with those above", Levels::all};
+      this, "mips", "the same levels; inside the next finer level, their voxels come from its voxels", Levels::all};
 
   /// The change up to which the blocks of these volumes are made.
   struct Made {

@@ -21,31 +21,31 @@ class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   StoreInput store{this};
   In<NormalLobes> lobes{this, "lobes", Presence::optional,
-                        "beside 'grid': to which side its voxels shine; without them to all sides alike"};
+                        "beside 'grid': directions into which its voxels reflect; without them voxels are isotropic"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media that dim what the cones see; light that they scatter is left out"};
+                           "media that attenuate the cones; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
   Param<int> glossyCones{this, "glossy_cones", 4, within(1, 64),
-                         "cones per pixel that share the Phong lobe; 1, as published: one as wide as it"};
+                         "cones per pixel that share the Phong lobe; 1: one cone as wide as the lobe, as published"};
   Param<Distribution> distribution{
       this, "distribution", Distribution::cosine,
-      "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
+      "diffuse cones; cosine: of equal weight, distributed as the cosine; published: one along the normal and four at 45 degrees"};
   Param<float> coneRatio{this, "cone_ratio",
                          1.15470053837925152902f,  // 2 tan 30 degrees
                          within(0.01f, 8.0f),
-                         "diameter of one of those five over its height; no number is published"};
+                         "diameter over height of a cone with 'distribution published'; no number is published"};
   Param<int> pattern{
       this, "pattern", 4, within(1, 8),
-      "side of a square of pixels each of which sends its cones elsewhere; a joint bilateral filter as wide averages them, so that they count as that many times more; 1, as published: each by itself"};
+      "side of a square of pixels whose cones have different directions; a joint bilateral filter of this width averages them, which acts as that many more cones; 1: each pixel by itself, as published"};
   Param<Resolution> resolution{
       this, "resolution", Resolution::full,
-      "of the pixels that send cones; those between are filled by a joint bilateral filter"};
+      "pixels that send cones; full: all; half: one of 2 x 2; quarter: one of 4 x 4, with the others filled by a joint bilateral filter"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
-      "distance off a pixel's surface, in voxels, at which that filter gives another one the weight 1/e"};
+      "distance from a pixel's surface at which that filter gives another pixel the weight 1/e, in voxels"};
   Param<ConeLobe> coneLobe{
       this, "cone_lobe", ConeLobe::sine,
-      "with 'lobes': standard deviation of a cone's directions as the sine of its half angle; or, as published, its cosine"};
+      "with 'lobes': standard deviation of a cone's directions; sine: the sine of its half angle; cosine: the cosine, as published"};
   ConeMarch march{this};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};

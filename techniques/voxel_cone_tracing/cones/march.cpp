@@ -102,7 +102,7 @@ StoreInput::StoreInput(Pass* pass)
                Levels::all),
       reading_(
           pass, "reading", Reading::layers,
-          "of 'directions', 'clipmap' and an octree with six faces: each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
+          "with 'directions', 'clipmap' and an octree with six faces; layers: each face is read in the layer of voxels across its axis, so that walls stay closed; interpolated: all faces are filtered along all axes and averaged, as published") {
 }
 
 StoreBinding StoreInput::binding() const {
@@ -121,23 +121,23 @@ ConeMarch::ConeMarch(Pass* pass)
     : step_(pass, "step", MarchSettings{}.step, within(0.05f, 2.0f),
             "step along a cone as a share of its diameter"),
       offset_(pass, "offset", MarchSettings{}.offset, within(0.0f, 8.0f),
-              "start of a cone along the normal, in voxels"),
+              "distance of a cone's start along the normal, in voxels"),
       start_(pass, "start", MarchSettings{}.start, within(0.0f, 8.0f),
-             "start of a cone along its axis, in voxels"),
+             "distance of a cone's start along its axis, in voxels"),
       clearance_(
           pass, "clearance", MarchSettings{}.clearance, within(0.0f, 1e3f),
-          "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"),
+          "largest voxel that is read, as a share of its height over the surface; as published: no limit, 1000"),
       footprint_(
           pass, "footprint", MarchSettings{}.footprint, within(0.25f, 1.0f),
-          "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"),
+          "size of the voxels that are read, as a share of the cone's diameter; as published: 1, which reads a width of twice the cone"),
       refinement_(
           pass, "refinement", MarchSettings{}.refinement, within(0.0f, 1.0f),
-          "least voxels that are read where they are partly covered, as a share of those that the cone asks for; 1: none smaller; 0: the finest"),
+          "smallest voxel that is read where voxels are partly covered, as a share of the size for the cone; 1: none smaller; 0: the finest"),
       reach_(pass, "reach", MarchSettings{}.reach, within(0.0f, 1e9f), "m",
              "length of a cone; 0: to the end of the grid"),
       jitter_(
           pass, "jitter", MarchSettings{}.jitter, within(0.0f, 1.0f),
-          "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands") {
+          "largest random reduction of a cone's first step, as a share of it, for each pixel and cone: noise in place of bands") {
 }
 
 shader::BindingSet ConeMarch::binding(const PassContext& frame, const StoreBinding& store) const {

@@ -27,9 +27,9 @@ class LightsPass : public Pass {
                          "point samples that represent all emissive triangles together"};
   Param<Cones> cones{
       this, "cones", Cones::sample,
-      "what a cone is aimed at: each sample, a disc of the area that it stands for; or the light as a whole, a disc of the spread of its power: one cone a light, and penumbras that voxels shape"};
+      "disc at which a cone is aimed; sample: one for each point sample, of the area that it represents; light: one for each light, as wide as its power is spread, which takes one cone a light"};
   Out<LightDiscs> lights{this, "lights",
-                         "every light as point samples, and the discs that cones are aimed at"};
+                         "every light as point samples, and the discs at which cones are aimed"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
   Needs needs() const override { return Needs::anyLight; }
@@ -67,25 +67,25 @@ class SoftShadowsPass : public Pass {
   StoreInput store{this};
   In<LightDiscs> lights{this, "lights", Presence::optional, "lights; without it only emission is seen"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media between lights and surfaces, which dim the light on its way"};
+                           "media that attenuate light between lights and surfaces"};
   Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
-                         "most steps through a medium that varies, towards a light"};
+                         "largest number of steps through a heterogeneous medium towards a light"};
   Param<Radius> radius{
       this, "radius", Radius::larger,
-      "radius of a cone: the larger of that of the light's disc, which grows towards the light, and that of the eye's cone where it meets the surface; or one of the two alone: as published the eye's"};
+      "radius of a cone; light: grows towards the light's disc; eye: that of the eye's cone at the surface, as published; larger: the larger of the two"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::surfaces,
-      "what voxels hold: surfaces, of which a closed one lets nothing through; or a medium, as the other cones see it: trilinear reading then lets exp(-2) = 0.14 of the light through a sheet"};
+      "meaning of a voxel's opacity; surfaces: a closed surface blocks all light; medium: a medium, as for the other cones, which with trilinear reading lets exp(-2) = 0.14 of the light through a sheet"};
   Param<float> step{this, "step", 0.125f, within(0.05f, 2.0f),
                     "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.5f, within(0.0f, 8.0f),
-                      "start of a cone along the normal, and its end before an area light, in voxels"};
-  Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"};
+                      "distance of a cone's start along the normal, and of its end before an area light, in voxels"};
+  Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f), "distance of a cone's start along its axis, in voxels"};
   Param<float> clearance{
       this, "clearance", 1.0f / 3.0f, within(0.0f, 1e3f),
-      "largest voxels that are read as a share of their height over the surface, and over that of an area light: from a third on they reach it"};
+      "largest voxel that is read, as a share of its height over the surface and over an area light's surface; above a third voxels reach that surface"};
   Param<float> footprint{this, "footprint", 0.5f, within(0.25f, 1.0f),
-                         "voxels that are read as a share of the diameter of the cone"};
+                         "size of the voxels that are read, as a share of the cone's diameter"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
 

@@ -55,7 +55,7 @@ class FilterPass : public Pass {
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
-      "how children make a parent: seen through along the axis that they face; or their plain mean"};
+      "opacity of a parent; facing: that of its children seen along the axis that they face; average: their mean"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {

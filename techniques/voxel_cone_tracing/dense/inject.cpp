@@ -30,7 +30,7 @@ class Bounces {
   explicit Bounces(Pass* pass)
       : count_(
             pass, "bounces", 1, within(1, 256),
-            "times that light was reflected where the cones find it: 1, as published; for each one more cones gather it for every fragment through the grid of the one before"),
+            "number of reflections of the light in the voxels; 1: as published; for each further one, cones gather light at every fragment from the grid of the previous one"),
         cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
   int count() const { return count_; }
   int cones() const { return cones_; }
@@ -50,8 +50,8 @@ class Injection {
         light_(pass),
         storeMedia_(
             pass, "store_media", false,
-            "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"),
-        precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
+            "voxels store media beside surfaces and scatter light isotropically, so that one set of cones sees both, and 'gather' needs no 'media' (thesis Sec. 4.5)"),
+        precision_(pass, "precision", Precision::float_, "numbers in the grid; float: 16 bytes a voxel; half: 8") {}
 
   /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
   /// fit, nothing of it is taken, and the Error says what would.
@@ -311,7 +311,7 @@ class InjectPass : public Pass {
   Injection injection{this};
   Bounces bounces{this};
   Param<bool> mips{this, "mips", true,
-                   "room for the coarser levels that 'filter' fills; 'filter_directional' needs none"};
+                   "allocate the coarser levels that 'filter' fills; 'filter_directional' does not need them"};
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                              Levels::finest};
 
@@ -338,10 +338,10 @@ class InjectDirectionalPass : public Pass {
   Bounces bounces{this};
   Param<float> backWeight{
       this, "back_weight", FaceRule{}.backWeight, within(0.0f, 1.0f),
-      "of the back of a fragment in the mean of a face, where fronts have 1: the dark insides of a thin wall do not count beside its lit face; 0: the backs of sheets are dark"};
+      "weight of a fragment's back in the mean of a face, where fronts have the weight 1; small, so that the dark inside of a thin wall does not darken its lit face; 0: the backs of sheets are dark"};
   Param<OpaqueAlong> opaqueAlong{
       this, "opaque_along", OpaqueAlong::facing,
-      "axes along which a fragment closes its voxel: as far as it faces them, or all, as in one grid"};
+      "axes along which a fragment makes its voxel opaque; facing: each as far as the fragment faces it; all: all axes, as in one grid"};
   Out<DirectionalRadianceGrid> radiance{
       this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
       Levels::finest};
@@ -367,7 +367,7 @@ class OctreeInjectPass : public Pass {
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
   Param<Faces> faces{
       this, "faces", Faces::one,
-      "of a voxel: one, the same from all sides; or six at all levels, each with its own light and opacity, as those of inject_directional (Crassin et al. 2011, Sec. 8.1; thesis Sec. 3.1.3)"};
+      "values of a voxel; one: the same to all sides; six: at all levels a value for each face, with its own light and opacity, as of inject_directional (Crassin et al. 2011, Sec. 8.1; thesis Sec. 3.1.3)"};
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 

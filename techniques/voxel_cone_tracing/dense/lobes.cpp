@@ -15,7 +15,7 @@ namespace resolve = shaders::voxel_cone_tracing::lobes;
 class LobesPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples, those of the grid"};
   DirectLight light{this};
-  Out<NormalLobes> lobes{this, "lobes", "to which side the surfaces in voxels shine, all levels"};
+  Out<NormalLobes> lobes{this, "lobes", "directions into which the surfaces in voxels reflect, all levels"};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
 

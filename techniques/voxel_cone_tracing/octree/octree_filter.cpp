@@ -77,7 +77,7 @@ class OctreeFilterPass : public Pass {
   In<RadianceOctree> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
-      "how finer voxels make a coarse one: seen through along the axis that they face; or their plain mean"};
+      "opacity of a coarse voxel; facing: that of the finer voxels seen along the axis that they face; average: their mean"};
   Out<RadianceOctree> mips{this, "mips", "the same octree with values at all depths", Levels::all};
 
   void run(PassContext& frame) override {

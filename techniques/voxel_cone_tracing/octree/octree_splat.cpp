@@ -22,7 +22,7 @@ class OctreeSplatPass : public Pass {
   enum class Photons { summed, averaged };
   Param<Photons> rule{
       this, "photons_are", Photons::summed,
-      "the flux of all of them goes into the area that surfaces have in a voxel, so that none is lost (Crassin et al. 2011); or they are averaged for each light: what lies between photons stays dark"};
+      "radiance from photons; summed: the flux of all photons in a voxel over the surface area in it, so that no light is lost (Crassin et al. 2011); averaged: the mean of each light's photons, which leaves voxels between photons dark"};
   Out<RadianceOctree> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                                Levels::all};
 

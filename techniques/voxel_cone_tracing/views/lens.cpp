@@ -16,18 +16,18 @@ class LensPass : public Pass {
 
   StoreInput store{this};
   In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media that dim what the cones see; light that they scatter is left out"};
+                           "media that attenuate the cones; light that they scatter is left out"};
   Param<Width> width{
       this, "width", Width::spread,
-      "diameter of a cone: that of the disc which spreads as pixel and lens do together; or as published a double cone, whose diameter is the sum of theirs"};
+      "diameter of a cone; spread: that of a disc with the combined variance of pixel and lens; double_cone: the sum of the diameters of pixel and lens, as published"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::surfaces,
-      "what voxels hold: surfaces, of which a closed one lets nothing through; or a medium, as the other cones see it"};
+      "meaning of a voxel's opacity; surfaces: a closed surface blocks all light; medium: a medium, as for the other cones"};
   Param<float> step{this, "step", 0.25f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"};
   Param<float> footprint{this, "footprint", 0.5f, within(0.25f, 1.0f),
-                         "voxels that are read as a share of the diameter of the cone"};
+                         "size of the voxels that are read, as a share of the cone's diameter"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
-                      "what the voxels send through the lens, W/(sr m^2)"};
+                      "radiance of the voxels through the lens, W/(sr m^2)"};
 
   Reads readsFrom() const override { return Reads::camera | Reads::lens | Reads::environment; }
 
@@ -67,7 +67,7 @@ class LensPass : public Pass {
 void addLens(TechniqueRegistry& registry) {
   registry.add<LensPass>(
       "lens",
-      "The store as a camera with a thin lens sees it: depth of field (Crassin et al. 2011; thesis Sec. 2.4)");
+      "Depth of field: the voxels as seen through a thin lens (Crassin et al. 2011; thesis Sec. 2.4)");
 }
 
 }  // namespace lumivox::voxel_cone_tracing

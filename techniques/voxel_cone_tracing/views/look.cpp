@@ -27,26 +27,26 @@ class LookPass : public Pass {
 
   InVoxels voxels{this, "voxels", "the grid: an output of any kind that is exported"};
   Param<int> field{this, "field", 0, within(0, 99),
-                   "which of the fields of the level, in the order of 'vdbexport --list'"};
+                   "number of the field, in the order of 'vdbexport --list'"};
   Param<int> level{this, "level", 0, within(0, 31),
-                   "which level of the grid; 0 is the finest, or the smallest of nested ones"};
+                   "level of the grid; 0: the finest, or the smallest of nested grids"};
   Param<Emission> emission{
       this, "emission", Emission::colours,
-      "what voxels emit: the value itself as a colour, or a colour of a ramp from black over blue, green and yellow to white"};
+      "emission of voxels; colours: the value itself; ramp: a colour from black over blue, green and yellow to white"};
   Param<float> low{this, "low", 0.0f, within(-1e9f, 1e9f), "value at the lower end of the ramp"};
   Param<float> high{this, "high", 1.0f, within(-1e9f, 1e9f), "value at the upper end of the ramp"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::automatic,
-      "how opaque a voxel is: as the kind's own field of opacity says; by the value times 'absorption'; opaque where the value is not 0; or the first of these that the kind has"};
+      "opacity of a voxel; field: the kind's own field of opacity; absorption: by the value times 'absorption'; solid: opaque where the value is not 0; automatic: the first of these that the kind has"};
   Param<float> absorption{this, "absorption", 1.0f, within(0.0f, 1e9f), "/m", "extinction at the value 1"};
   Param<bool> multiplied{this, "multiplied", false,
-                         "the values are multiplied by the opacity already, as radiance is"};
-  Param<float> gain{this, "gain", 1.0f, within(0.0f, 1e9f), "factor of what is emitted"};
+                         "values are already multiplied by the opacity, as radiance is"};
+  Param<float> gain{this, "gain", 1.0f, within(0.0f, 1e9f), "factor of the emission"};
   Param<Filter> filter{this, "filter", Filter::nearest,
-                       "cells as they are, or blended between their middles"};
+                       "reading of cells; nearest: as they are; trilinear: interpolated between their centres"};
   Param<Cast> cast{
       this, "cast", Cast::ray,
-      "through the middle of each pixel, or through all of it: by means of voxels as large as the pixel is there"};
+      "ray: through the centre of each pixel; cone: through the whole pixel, by means over voxels as large as the pixel is there"};
   Param<Faces> faces{
       this, "faces", Faces::off,
       "nearest cells are shaded by the face that is seen, so that each stands out; and have darker edges"};
@@ -54,7 +54,7 @@ class LookPass : public Pass {
                    0.0f, within(0.0f, 1e9f),
                    "m",  "distance before the camera up to which everything is cut away"};
   Param<float> step{this, "step", 0.5f, within(0.05f, 2.0f),
-                    "step as a share of a voxel, but from cell to cell of nearest ones"};
+                    "step as a share of a voxel; with 'filter nearest' the march goes from cell to cell"};
   Param<float> background{this, "background", 0.0f, within(0.0f, 1e9f), "radiance behind the grid"};
   Out<Image> radiance{this, "radiance", "the grid as the camera sees it"};
 
