@@ -28,9 +28,9 @@ const LeftOut* find(const Explanation& explanation, LeftOut::Level level, const 
 }
 
 /// A grid that follows the camera in steps of a metre, but not upwards.
-class SteppedGrid : public Voxels {
+class SteppedGrid : public VoxelsToy {
  public:
-  using Voxels::Voxels;
+  using VoxelsToy::VoxelsToy;
   Reads readsFrom() const override { return Reads::partOfCamera; }
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     return {std::floor(snapshot.camera.eye.x), std::floor(snapshot.camera.eye.z)};

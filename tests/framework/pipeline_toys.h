@@ -93,7 +93,7 @@ class PaintCamera : public Paint {
 };
 
 /// Stands for the voxelization of static geometry.
-class Voxels : public Toy {
+class VoxelsToy : public Toy {
  public:
   using Toy::Toy;
   Param<int> resolution{this, "resolution", 8, {1, 64}, "voxels along each side"};
@@ -187,7 +187,7 @@ inline Scene triangleScene() {
 inline TestTechniques& addToys(TestTechniques& techniques) {
   techniques.add<Paint>("toy", "paint");
   techniques.add<PaintCamera>("toy", "paint_camera");
-  techniques.add<Voxels>("toy", "voxels");
+  techniques.add<VoxelsToy>("toy", "voxels");
   techniques.add<Gather>("toy", "gather");
   techniques.add<Add>("toy", "add");
   techniques.add<Fog>("toy", "fog");
