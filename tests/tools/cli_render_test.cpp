@@ -376,6 +376,7 @@ TEST_CASE(
   CHECK(glsl.exitCode == 0);
   CHECK(contains(glsl.output, "#version 450"));
   CHECK(contains(glsl.output, "void main()"));
+  CHECK(contains(runCommand("lumivox shaders --print toolkit/scan").output, "void main()"));
   checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gahter"), "gather");
   checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
   checkRefused(runCommand("lumivox shaders"), "SCENE");
