@@ -73,8 +73,8 @@ shader::ShaderPack packNamed(const std::string& name, TechniqueSet& techniques) 
   if (std::filesystem::exists(frameworkPack(name))) return shader::readShaderPack(frameworkPack(name));
   for (const SkippedTechnique& skipped : techniques.skipped())
     std::cerr << fmt::format("{}: skipped: {}\n", skipped.library.string(), skipped.reason);
-  throw Error(fmt::format("no technique '{}'; expected one of {}", name,
-                          fmt::join(techniques.available(), ", ")));
+  throw Error(
+      fmt::format("no technique '{}'; expected one of {}", name, fmt::join(techniques.available(), ", ")));
 }
 
 int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
