@@ -6,7 +6,7 @@
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/octree/radiance_octree.h.
 #ifndef LUMIVOX_OCTREE
 #define LUMIVOX_OCTREE
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 const uint kTagged = 0xfffffffeu;  // in place of children: they are to be made
 

@@ -5,7 +5,7 @@
 // PUBLISHED: the bricks of a depth are those that it took from the counter.
 #pragma lumivox axis PUBLISHED 0 1
 #define OCTREE_BUILD
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 layout(local_size_x = 16) in;
 #include "octree_levels.glsl"
 

@@ -4,7 +4,7 @@
 // (octree_tag.comp does as published).
 layout(local_size_x = 64) in;
 #include "toolkit/moving_fragments.glsl"
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 #include "octree_extent.glsl"
 
 layout(std140, binding = 0) uniform Marks {

@@ -4,7 +4,7 @@
 // the same tree at every run, and all depths at once.
 #pragma lumivox axis BRICKS own published
 #define OCTREE_BUILD
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
