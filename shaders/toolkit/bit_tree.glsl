@@ -1,5 +1,5 @@
 // A bit for each node that a tree over a grid could have: depth d, from the root at 0 on, has 8^d of them along a Morton curve, and the depths
-// lie one behind the other.
+// lie one behind the other. RankedTags count the bits before theirs, so a node finds its place in a list of the nodes in one read.
 // C++ side: framework/include/lumivox/toolkit/bit_tree.h.
 #ifndef LUMIVOX_BIT_TREE
 #define LUMIVOX_BIT_TREE
@@ -24,5 +24,20 @@ uint gatherBits(uint x) {
 }
 uint mortonOf(ivec3 place) { return spreadBits(uint(place.x)) | spreadBits(uint(place.y)) << 1 | spreadBits(uint(place.z)) << 2; }
 ivec3 placeOf(uint morton) { return ivec3(gatherBits(morton), gatherBits(morton >> 1), gatherBits(morton >> 2)); }
+
+const uint kNone = 0xffffffffu;
+uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
+
+// Bits of nodes, tags, beside the number of tagged nodes before them.
+struct RankedTags {
+  uint tags;
+  uint nodesBefore;
+};
+
+// The number of tagged nodes before one by its place along the curve; kNone: it has no tag.
+uint rankIn(RankedTags word, uint morton) {
+  uint bit = morton & 31u;
+  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
+}
 
 #endif

@@ -20,8 +20,8 @@ const char* const kGather =
     "output diffuse gather.diffuse\noutput glossy gather.glossy";
 
 /// A grid that follows the camera in steps of a metre, but not upwards.
-struct SteppedGrid : Voxels {
-  using Voxels::Voxels;
+struct SteppedGrid : VoxelsToy {
+  using VoxelsToy::VoxelsToy;
   Reads readsFrom() const override { return Reads::partOfCamera; }
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     return {std::floor(snapshot.camera.eye.x), std::floor(snapshot.camera.eye.z)};

@@ -58,7 +58,7 @@ struct Room {
 
   Room() {
     toys.add<ShowScene>("toy", "show");
-    toys.add<Voxels>("toy", "voxels");
+    toys.add<VoxelsToy>("toy", "voxels");
     toys.add<Work>("toy", "work");
   }
   std::unique_ptr<PipelineExecutor> executor(const std::string& body, RenderOptions options = {},

@@ -89,7 +89,7 @@ struct PaintCamera : Paint {
 };
 
 /// Stands for the voxelization of static geometry.
-struct Voxels : Toy {
+struct VoxelsToy : Toy {
   using Toy::Toy;
   Param<int> resolution{this, "resolution", 8, {1, 64}, "voxels along each side"};
   Param<float> width{this, "width", 1.0f, {0.1f, 100.0f}, "m", "of the grid"};
@@ -179,7 +179,7 @@ inline Scene triangleScene() {
 inline TestTechniques& addToys(TestTechniques& techniques) {
   techniques.add<Paint>("toy", "paint");
   techniques.add<PaintCamera>("toy", "paint_camera");
-  techniques.add<Voxels>("toy", "voxels");
+  techniques.add<VoxelsToy>("toy", "voxels");
   techniques.add<Gather>("toy", "gather");
   techniques.add<Add>("toy", "add");
   techniques.add<Fog>("toy", "fog");

@@ -329,6 +329,7 @@ TEST_CASE(
   CHECK(glsl.exitCode == 0);
   CHECK(contains(glsl.output, "#version 450"));
   CHECK(contains(glsl.output, "void main()"));
+  CHECK(contains(typed("shaders --print toolkit/scan").output, "void main()"));
   checkRefused(typed("shaders --print voxel_cone_tracing/gahter"), "gather");
   checkRefused(typed("shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
   checkRefused(typed("shaders"), "SCENE");

@@ -53,8 +53,11 @@ void addVariants(PipelineExecutor& executor, Cost& cost) {
     if (usage.needed.empty()) continue;
     const std::size_t slash = name.find('/');
     const std::string programName = name.substr(slash + 1);
-    // The same voxelizer, by whichever way this device is faster.
-    const std::string stem = programName == "conservative_compute" ? "conservative" : programName;
+    // The same voxelizer, by whichever way this device is faster. Whatever technique runs a program of the
+    // toolkit.
+    const std::string stem = programName == "conservative_compute"     ? "conservative"
+                             : name.substr(0, slash + 1) == "toolkit/" ? name
+                                                                       : programName;
     const shader::PackedProgram& program =
         executor.shaders().packs().at(name.substr(0, slash)).program(programName);
     cost.words.insert("program " + stem);
@@ -171,8 +174,9 @@ const std::vector<PipelineCosts> kPipelines{
       {"glossy material", "bytes gather; compose GLOSSY=1; gather GLOSSY=1"},
       {"moving camera", "again compose gather"},
       {"moving object",
-       "again compose gather grid light voxels; program changed_arguments changed_bricks "
-       "changed_cells changed_join changed_list changed_mark changed_scan changed_sort changed_views "
+       "again compose gather grid light voxels; program changed_bricks toolkit/scan "
+       "toolkit/changed_lit toolkit/changed_join toolkit/changed_list toolkit/changed_mark "
+       "toolkit/changed_sort toolkit/changed_views "
        "count_behind; bytes light voxels; add CHANGED=1; claim CHANGED=1; inject CHANGED=1; mark "
        "CHANGED=1; resolve CHANGED=1"},
       {"texture", "conservative TEXTURES=1"}}},
@@ -181,7 +185,7 @@ const std::vector<PipelineCosts> kPipelines{
       {"emission", "bytes lights"},
       {"environment", "start OUTSIDE=environment"},
       {"glossy material",
-       "pass average cones grid reflect; program average_add average_claim average_number "
+       "pass average cones grid reflect; program average_add toolkit/claim toolkit/number "
        "average_resolve filter reflect; compose GLOSSY=1; gather DIFFUSE=0 ENVIRONMENT=0 FACES=one "
        "GLOSSY=1 LOBES=0 LOOK_UP=own MEDIUM=none STORE=dense"},
       {"moving camera", "again compose gather"},
@@ -227,13 +231,14 @@ const std::vector<PipelineCosts> kPipelines{
       {"glossy material", "bytes gather; compose GLOSSY=1; gather GLOSSY=1"},
       {"moving camera", "again compose gather"},
       {"moving object",
-       "again compose gather grid light voxels; program changed_arguments changed_bricks "
-       "changed_cells changed_join changed_list changed_mark changed_scan changed_sort changed_views "
+       "again compose gather grid light voxels; program changed_bricks toolkit/scan "
+       "toolkit/changed_lit toolkit/changed_join toolkit/changed_list toolkit/changed_mark "
+       "toolkit/changed_sort toolkit/changed_views "
        "count_behind; bytes light voxels; add CHANGED=1; claim CHANGED=1 DIRECTIONS=1; inject "
        "CHANGED=1; mark CHANGED=1; resolve CHANGED=1"},
       {"particles",
        "pass march particles smoke smooth solid; again compose direct gather grid light march "
-       "particles smoke smooth; program average_add average_claim average_number average_resolve "
+       "particles smoke smooth; program average_add toolkit/claim toolkit/number average_resolve "
        "density insert light_depth march particles upsample; bytes direct gather light; compose "
        "SCATTERED=1 TRANSMITTANCE=1; gather MEDIUM=varying; inject MEDIUM=varying; shade "
        "MEDIUM=varying"},

@@ -176,6 +176,7 @@ TEST_CASE("the Debian package names its dependencies and holds programs, headers
         "./usr/lib/lumivox/techniques/direct_lighting.shaderpack\n",
         "./usr/include/lumivox/plugin/technique.h\n", "./usr/share/lumivox/cmake/LumivoxConfig.cmake\n",
         "./usr/share/lumivox/shaders/common/brdf.glsl\n", "./usr/share/lumivox/scenes/cornell.scene\n",
+        "./usr/lib/lumivox/shaders/toolkit.shaderpack\n", "./usr/share/lumivox/shaders/toolkit/slots.glsl\n",
         "./usr/share/lumivox/docs/writing_a_technique.md\n",
         "./usr/share/lumivox/examples/seen_voxels/techniques/seen_voxels/seen_voxels.h\n",
         "./usr/share/man/man1/lumivox.1", "./usr/share/bash-completion/completions/lumivox\n"}) {

@@ -9,6 +9,7 @@
 #include "describe_json.h"
 #include "highlighting.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/terminal.h"
 #include "lumivox/dsl/schema.h"
@@ -267,7 +268,8 @@ std::string kindsAsMarkdown(TechniqueSet& techniques) {
   return text;
 }
 
-/// The numbers of bindings that the shaders of several techniques agree on: those of shaders/common.
+/// The numbers of bindings that the shaders of several techniques agree on: those of shaders/common and
+/// shaders/toolkit.
 std::string bindingsAsMarkdown(TechniqueSet& techniques) {
   using Key = std::pair<shader::BindingKind, std::string>;
   struct Use {
@@ -275,22 +277,25 @@ std::string bindingsAsMarkdown(TechniqueSet& techniques) {
     std::set<std::string> techniques;
   };
   std::map<Key, Use> uses;
+  const auto look = [&](const std::string& name, const shader::ShaderPack& pack) {
+    for (const shader::PackedProgram& program : pack.programs)
+      for (const shader::PackedBinding& binding : program.bindings) {
+        Use& use = uses[{binding.kind, binding.name}];
+        use.numbers.insert(binding.binding);
+        use.techniques.insert(name);
+      }
+  };
   for (const std::string& name : techniques.available())
-    if (const Technique* technique = techniques.technique(name))
-      for (const shader::PackedProgram& program : technique->shaders.programs)
-        for (const shader::PackedBinding& binding : program.bindings) {
-          Use& use = uses[{binding.kind, binding.name}];
-          use.numbers.insert(binding.binding);
-          use.techniques.insert(name);
-        }
+    if (const Technique* technique = techniques.technique(name)) look(name, technique->shaders);
+  look("toolkit", shader::readShaderPack(frameworkPack("toolkit")));
   std::map<std::pair<shader::BindingKind, std::uint32_t>, std::vector<std::string>> claimed;
   for (const auto& [key, use] : uses)
     if (use.numbers.size() == 1 && use.techniques.size() > 1)
       claimed[{key.first, *use.numbers.begin()}].push_back("`" + key.second + "`");
   std::string text =
       "\n## Claimed bindings\n\nNumbers that bindings of one name have in the shaders of several techniques: "
-      "those of `shaders/common`, which a shader that includes the file leaves free, and a few habits. Each kind "
-      "of binding counts by itself.\n\n| Kind | Number | Bindings |\n|---|---|---|\n";
+      "those of `shaders/common` and `shaders/toolkit`, which a shader that includes the file leaves free, and a "
+      "few habits. Each kind of binding counts by itself.\n\n| Kind | Number | Bindings |\n|---|---|---|\n";
   for (const auto& [place, names] : claimed)
     text += fmt::format("| {} | {} | {} |\n", name(place.first), place.second, fmt::join(names, ", "));
   return text;

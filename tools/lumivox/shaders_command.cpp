@@ -6,6 +6,7 @@
 #include "command.h"
 #include "common/named_texts.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/shader/library.h"
 
@@ -66,21 +67,24 @@ std::vector<int> parseVariant(const shader::PackedProgram& program, const std::s
   return values;
 }
 
+/// Those of a technique, or the framework's own.
+shader::ShaderPack packNamed(const std::string& name, TechniqueSet& techniques) {
+  if (const Technique* technique = techniques.technique(name)) return technique->shaders;
+  if (std::filesystem::exists(frameworkPack(name))) return shader::readShaderPack(frameworkPack(name));
+  for (const SkippedTechnique& skipped : techniques.skipped())
+    std::cerr << fmt::format("{}: skipped: {}\n", skipped.library.string(), skipped.reason);
+  throw Error(
+      fmt::format("no technique '{}'; expected one of {}", name, fmt::join(techniques.available(), ", ")));
+}
+
 int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
   const std::size_t slash = command.program.find('/');
   if (slash == std::string::npos)
     throw Error(fmt::format("--print '{}': expected TECHNIQUE/PROGRAM, such as voxel_cone_tracing/gather",
                             command.program));
   TechniqueSet techniques = global.techniqueSet();
-  const std::string techniqueName = command.program.substr(0, slash);
-  const Technique* technique = techniques.technique(techniqueName);
-  if (technique == nullptr) {
-    for (const SkippedTechnique& skipped : techniques.skipped())
-      std::cerr << fmt::format("{}: skipped: {}\n", skipped.library.string(), skipped.reason);
-    throw Error(fmt::format("no technique '{}'; expected one of {}", techniqueName,
-                            fmt::join(techniques.available(), ", ")));
-  }
-  const shader::PackedProgram& program = technique->shaders.program(command.program.substr(slash + 1));
+  const shader::ShaderPack pack = packNamed(command.program.substr(0, slash), techniques);
+  const shader::PackedProgram& program = pack.program(command.program.substr(slash + 1));
   const shader::PackedVariant* chosen = program.variants.empty() ? nullptr : &program.variants.front();
   if (!command.variant.empty() || program.axes.empty()) {
     const std::vector<int> values = parseVariant(program, command.variant);
@@ -93,7 +97,7 @@ int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
   std::string text;
   for (const shader::PackedStage& stage : chosen->stages)
     text += fmt::format("// {}, {}: {}\n{}\n", command.program, stageName(stage.stage),
-                        variantText(program, chosen->values), technique->shaders.codes.at(stage.code).glsl());
+                        variantText(program, chosen->values), pack.codes.at(stage.code).glsl());
   print(text);
   return kGood;
 }

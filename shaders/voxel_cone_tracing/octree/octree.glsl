@@ -4,7 +4,7 @@
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/octree/radiance_octree.h.
 #ifndef LUMIVOX_OCTREE
 #define LUMIVOX_OCTREE
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 layout(std140, binding = 3) uniform Octree {
   int octreeDepth;      // of the leaves

@@ -2,7 +2,7 @@
 // The bricks of each depth, and the dispatches over them, so that no count travels to the host. Where there is too little room the tree stays
 // empty; the host learns how much is wanted when the frame is done.
 #define OCTREE_BUILD
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 layout(local_size_x = 16) in;
 #include "octree_levels.glsl"
 

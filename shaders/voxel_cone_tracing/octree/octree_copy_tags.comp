@@ -1,6 +1,6 @@
 #version 450
 // The tags of static geometry, to which those of what moves are added.
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 

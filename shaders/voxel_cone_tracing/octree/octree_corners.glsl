@@ -3,7 +3,7 @@
 #ifndef LUMIVOX_OCTREE_CORNERS
 #define LUMIVOX_OCTREE_CORNERS
 #include "octree.glsl"
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 #ifdef OCTREE_BUILD
 #define OCTREE_CORNERS_ACCESS writeonly

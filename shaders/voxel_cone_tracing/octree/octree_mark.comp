@@ -3,7 +3,7 @@
 // Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once.
 layout(local_size_x = 64) in;
 #include "toolkit/moving_fragments.glsl"
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 layout(std140, binding = 0) uniform Marks {
   int depth;  // of the leaves

@@ -2,7 +2,7 @@
 // Writes the places of the bricks, and the bricks around the nodes that are shown: all depths at once, and the same tree at every run (thesis
 // 004, Sec. 4.2.2, Listing 4.22 takes places from atomic counters, depth after depth).
 #define OCTREE_BUILD
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"

@@ -2,7 +2,7 @@
 #ifndef LUMIVOX_OCTREE_RANKS
 #define LUMIVOX_OCTREE_RANKS
 #include "octree.glsl"
-#include "octree_tags.glsl"
+#include "toolkit/bit_tree.glsl"
 
 layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
 
