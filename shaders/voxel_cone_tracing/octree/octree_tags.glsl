@@ -7,5 +7,4 @@
 // Words of tags that one thread counts.
 const uint kChunk = 64u;
 
-
 #endif

@@ -49,7 +49,7 @@ class LookPass : public Pass {
       "ray: through the centre of each pixel; cone: through the whole pixel, by means over voxels as large as the pixel is there"};
   Param<Faces> faces{
       this, "faces", Faces::off,
-      "nearest cells are shaded by the face that is seen, so that each stands out; and have darker edges"};
+      "whether nearest cells are shaded by the face that is seen, so that each stands out, and have darker edges, too"};
   Param<float> cut{this, "cut",
                    0.0f, within(0.0f, 1e9f),
                    "m",  "distance before the camera up to which everything is cut away"};
