@@ -1,7 +1,7 @@
 // A sparse voxel octree, Listing 4.16. Depth 0 is the root, `octreeDepth` that of the leaves. The eight children of a node are a tile of 2 x 2 x 2
 // nodes, one behind the other; the root has a tile to itself. Node n of a depth has a brick of the voxels 2n to 2n + 2 of that depth along each
 // axis, which shares its sides with its neighbours', so that trilinear reading never leaves a brick.
-// C++ side: OctreeNodes and OctreeBinding in techniques/thesis_cone_tracing/octree.h.
+// C++ side: OctreeNodes in techniques/thesis_cone_tracing/octree_ports.h.
 #ifndef LUMIVOX_THESIS_OCTREE
 #define LUMIVOX_THESIS_OCTREE
 

@@ -1,5 +1,5 @@
 // The bricks of an octree by their depths, for passes over them (Listing 4.20). Included after the local size of kOctreeGroup, which is along x
-// alone. C++ side: OctreeNodes, forEachBrick in techniques/thesis_cone_tracing/octree.h.
+// alone. C++ side: OctreeNodes in octree_ports.h, forEachBrick in octree.h of techniques/thesis_cone_tracing.
 #ifndef LUMIVOX_THESIS_OCTREE_LEVELS
 #define LUMIVOX_THESIS_OCTREE_LEVELS
 #include "common/list.glsl"

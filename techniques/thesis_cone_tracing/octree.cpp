@@ -2,7 +2,6 @@
 // Sec. 4.2.2, Listings 4.16 to 4.22).
 #include "octree.h"
 
-#include <optional>
 #include <span>
 
 #include "lumivox/toolkit/bindings.h"
@@ -10,48 +9,6 @@
 namespace lumivox::thesis_cone_tracing {
 
 using namespace shaders::thesis_cone_tracing;
-
-std::vector<OctreeNodes::Brick> OctreeNodes::bricksOf(int level) const {
-  const auto words = levels->downloadValues<std::uint32_t>();
-  const std::uint64_t at = levelWord(depth - level);
-  const std::uint32_t first = words.at(at), count = words.at(at + 1);
-  const auto records = bricks->downloadValues<std::array<std::uint32_t, 2>>();
-  std::vector<Brick> result;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const std::uint32_t place = records.at(i)[1];
-    result.push_back({i, {place & 1023u, place >> 10 & 1023u, place >> 20 & 1023u}});
-  }
-  return result;
-}
-
-std::vector<bool> OctreeBricks::texelsInUse() const {
-  const glm::ivec3 size = poolSize();
-  std::vector<bool> result(GridPlacement{.resolution = size}.voxelCount());
-  constexpr int kSide = OctreeNodes::kBrickSide;
-  for (int level = 0; level < filledLevels; ++level)
-    for (const OctreeNodes::Brick& brick : tree.bricksOf(level))
-      for (int voxel = 0; voxel < OctreeNodes::kBrickVoxels; ++voxel) {
-        const glm::ivec3 at =
-            texelOf(brick.index) + glm::ivec3(voxel % kSide, voxel / kSide % kSide, voxel / (kSide * kSide));
-        result.at(static_cast<std::size_t>((at.z * size.y + at.y) * size.x + at.x)) = true;
-      }
-  return result;
-}
-
-std::vector<VoxelsRead::Voxel> OctreeBricks::voxels(int level, int component) const {
-  const std::vector<float> texels = radiance->downloadFloats(0);
-  const glm::ivec3 size = poolSize();
-  std::vector<VoxelsRead::Voxel> result;
-  for (const OctreeNodes::Brick& brick : tree.bricksOf(level))
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2), at = texelOf(brick.index) + local;
-      const float* texel =
-          texels.data() + 4 * static_cast<std::size_t>((at.z * size.y + at.y) * size.x + at.x);
-      const glm::vec3 value = component == 3 ? glm::vec3(texel[3]) : glm::vec3(texel[0], texel[1], texel[2]);
-      if (texel[3] > 0.0f) result.push_back({2 * brick.place + local, value});
-    }
-  return result;
-}
 
 OctreeBinding::OctreeBinding(const OctreeNodes& tree, int poolShift)
     : shader::BindingSet{shader::UniformSlot<octree_tag::Octree>{"Octree"}(

@@ -1,79 +1,11 @@
-// A sparse voxel octree as printed (thesis Gomes 2015, Sec. 3.1.1 and 4.2.2; Crassin et al. 2011, Sec. 4):
-// kinds of ports of this technique's own, and what passes over them share. GLSL side:
-// shaders/thesis_cone_tracing/octree.glsl and octree_levels.glsl.
+// What passes over the octree share. GLSL side: shaders/thesis_cone_tracing/octree.glsl and octree_levels.glsl.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <vector>
-
-#include "lumivox/pipeline/ports.h"
 #include "lumivox/plugin/technique.h"
+#include "octree_ports.h"
 #include "thesis_cone_tracing_shaders.h"
 
 namespace lumivox::thesis_cone_tracing {
-
-/// The nodes of an octree. Depth 0 is the root; level l of a grid with mips is depth `depth - l`. Node n of a
-/// level has a brick of the voxels 2n to 2n + 2 of that level along each axis, the last of which is its
-/// neighbour's own.
-struct OctreeNodes {
-  /// Where voxels lie: one to each eighth of a leaf, and at the corners of nodes means of those around
-  /// (thesis); or at the corners of nodes, coarse voxel j where finer voxel 2j is (Crassin et al. 2011).
-  enum class Voxels { inLeaves, atCorners };
-
-  GridPlacement grid;     ///< of the finest voxels
-  gpu::BufferRef nodes;   ///< OctreeNode
-  gpu::BufferRef bricks;  ///< OctreeBrick, by depth
-  gpu::BufferRef levels;  ///< OctreeLevels
-  int depth = 0;          ///< of the leaves
-  Voxels voxels = Voxels::inLeaves;
-  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
-  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
-
-  /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
-  static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;
-  /// Numbers of threads a brick for which there are dispatches.
-  static constexpr std::array<int, 6> kThreads{1, 6, 8, 9, 12, 27};
-  static constexpr int kBrickSide = 3, kBrickVoxels = 27;  ///< voxels along a brick, and in it
-  static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8;
-  /// Words of `levels` before those of a depth.
-  static constexpr std::uint64_t levelWord(int depth) {
-    return kLevelsBegin + kLevelWords * static_cast<std::uint64_t>(depth);
-  }
-  /// The middle of voxel 0 of every level, in finest voxels from the corner of the grid.
-  float firstVoxel() const { return voxels == Voxels::inLeaves ? 0.0f : 0.5f; }
-
-  /// A brick, read back.
-  struct Brick {
-    std::uint32_t index = 0;  ///< in the pool
-    glm::ivec3 place{0};      ///< of its node, in nodes of its level
-  };
-  std::vector<Brick> bricksOf(int level) const;
-};
-
-/// Outgoing radiance in the bricks of an octree, pre-multiplied by opacity.
-struct OctreeBricks {
-  OctreeNodes tree;
-  gpu::TextureRef radiance;  ///< the pool: 3 x 3 x 3 texels a brick, rgba32f
-  int poolShift = 0;         ///< the pool has 2 to the power of this bricks along x and y
-  int filledLevels = 1;      ///< finest first
-
-  glm::ivec3 texelOf(std::uint32_t brick) const {
-    const std::uint32_t row = (1u << poolShift) - 1u;
-    return OctreeNodes::kBrickSide *
-           glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
-  }
-  glm::ivec3 poolSize() const {
-    const gpu::TextureDescription& pool = radiance->description();
-    return {pool.width, pool.height, pool.depth};
-  }
-  /// Of the texels of the pool: those of bricks that there are, of the levels that are filled.
-  std::vector<bool> texelsInUse() const;
-  /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
-  /// `component`: 3 gives the opacity, 0 the three channels of radiance.
-  std::vector<VoxelsRead::Voxel> voxels(int level, int component) const;
-};
 
 /// The nodes of an octree, for programs that include octree.glsl.
 class OctreeBinding : public shader::BindingSet {
@@ -86,53 +18,3 @@ void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const
                   const OctreeNodes& tree, int depth, int threads);
 
 }  // namespace lumivox::thesis_cone_tracing
-
-namespace lumivox {
-
-template <>
-struct PortTraits<thesis_cone_tracing::OctreeNodes> {
-  static PortKind kind() {
-    return {
-        "OctreeNodes",
-        "the nodes of a sparse voxel octree as printed",
-        {{"nodes", "buffer", "array of OctreeNode in shaders/thesis_cone_tracing/octree.glsl"},
-         {"bricks", "buffer", "array of OctreeBrick: the node of each brick and where it lies"},
-         {"levels", "buffer", "bricks, tiles and leaves wanted; for each depth its bricks and dispatches"}}};
-  }
-  static void contents(const thesis_cone_tracing::OctreeNodes& port, PortContents& contents) {
-    contents.buffer("nodes", port.nodes);
-    contents.buffer("bricks", port.bricks);
-    contents.buffer("levels", port.levels);
-  }
-};
-
-template <>
-struct PortTraits<thesis_cone_tracing::OctreeBricks> {
-  static PortKind kind() {
-    PortKind result = PortTraits<thesis_cone_tracing::OctreeNodes>::kind();
-    result.name = "OctreeBricks";
-    result.meaning = "outgoing radiance and opacity in the bricks of a sparse voxel octree as printed";
-    result.resources.push_back(
-        {"radiance", "d3 rgba32f", "3 x 3 x 3 texels a brick: rgb radiance * opacity, a opacity"});
-    result.fields = {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
-                     {"opacity", "opacity", "1", PortField::Role::fog}};
-    return result;
-  }
-  static void contents(const thesis_cone_tracing::OctreeBricks& port, PortContents& contents) {
-    PortTraits<thesis_cone_tracing::OctreeNodes>::contents(port.tree, contents);
-    contents.texture("radiance", port.radiance, {.texels = [port] { return port.texelsInUse(); }});
-    for (int level = 0; level < port.filledLevels; ++level) {
-      const auto finest = static_cast<double>(port.tree.grid.voxelSize);
-      const double size = finest * (1 << level), middle = port.tree.firstVoxel() * finest;
-      const VoxelBox box{glm::dvec3(port.tree.grid.low) + middle - 0.5 * size, glm::dvec3(size),
-                         glm::ivec3(2 << (port.tree.depth - level))};
-      const std::uint64_t bytes = port.radiance->sizeBytes();
-      contents.field("radiance", box, VoxelsRead{3, bytes, [port, level] { return port.voxels(level, 0); }},
-                     level);
-      contents.field("opacity", box, VoxelsRead{1, bytes, [port, level] { return port.voxels(level, 3); }},
-                     level);
-    }
-  }
-};
-
-}  // namespace lumivox

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "../../techniques/thesis_cone_tracing/octree.h"
+#include "../../techniques/thesis_cone_tracing/octree_ports.h"
 #include "support/cones.h"
 #include "support/octree.h"
 

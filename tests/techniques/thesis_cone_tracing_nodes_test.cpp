@@ -184,13 +184,13 @@ TEST_CASE("a tree that outgrows its room is made again with all of it, and a sma
 
 TEST_CASE("a tree that does not fit is refused") {
   gpu::DeviceOptions options;
-  options.memoryBytes = 1u << 20;
+  options.memoryBytes = 1300u << 10;
   gpu::Device small(options);
   const glm::ivec3 size(128);
   const Scene scene = cones::emptyScene();
   PassHarness octree(small, techniques(), "thesis_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
   octree.setInput("fragments", listOf(shell(glm::ivec3(32)), size, small));
   CHECK_NOTHROW(octree.run());
-  octree.setInput("fragments", listOf(shell(glm::ivec3(64)), size, small));
+  octree.setInput("fragments", listOf(shell(size), size, small));
   CHECK_THROWS_WITH(octree.run(), Catch::Matchers::Contains("octree nodes"));
 }

@@ -224,7 +224,8 @@ TEST_CASE("describe answers in JSON with numbers in base units, and switches and
   CHECK(cones.at("default") == 6);
   CHECK(cones.at("high") == 256);
   CHECK(step.at("low") == 0.05);  // and not the float nearest to it
-  CHECK(member(gather.at("parameters"), "as_published").at("default") == false);
+  CHECK(member(described("near_field_voxels.gather").at(0).at("parameters"), "as_published").at("default") ==
+        false);
   CHECK(member(gather.at("parameters"), "distribution").at("choices") ==
         Json::array({"cosine", "published"}));
   CHECK(member(gather.at("parameters"), "reach").at("unit") == "m");
