@@ -237,13 +237,13 @@ TEST_CASE("the lines below the table of a search fit the terminal") {
 TEST_CASE("contradicting or unknown wishes for tuning are refused") {
   const Tuning tuning;
   for (const auto& [options, facts] : std::vector<std::pair<const char*, Tells>>{
-           {"", Tells("--frame-time", "--error")},
+           {"", Tells("frame time", "error")},
            {"--frame-time 16ms --budget 30", Tells("--budget", 30, "unit")},
            {"--frame-time 16ms --budget 0s", Tells("--budget", "above", 0)},
            {"--frame-time 16ms --error 1", Tells("excludes")},
            {"--frame-time 16parsecs", Tells("--frame-time", "16parsecs", "16ms", "0.5s")},
            {"--frame-time -1ms", Tells("--frame-time", "above", 0)},
-           {"--error 0", Tells("--error", "above", 0)},
+           {"--error 0", Tells("error", "above", 0)},
            {"--error 1 --metric flop", Tells("flop", "did you mean", "flip")},
            {"--error 1 --metric ssim", Tells("ssim", "expected one of")},
            {"--error 1 --output indirect", Tells("indirect", "expected one of")}}) {

@@ -153,75 +153,69 @@ TEST_CASE("the scanner looks into code and neither into comments nor, when asked
 }
 
 TEST_CASE("the scanner finds what breaks the rules of the house") {
-  CHECK(brokenIncludeOrder({{"framework/src/base/a.cpp", "#include \"lumivox/dsl/document.h\"\n"}}).size() ==
-        1);
-  CHECK(brokenIncludeOrder({{"framework/include/lumivox/scene/a.h", "#include <lumivox/gpu/device.h>\n"}})
-            .size() == 1);
-  CHECK(brokenIncludeOrder({{"framework/src/dsl/a.cpp", "#include \"page/data.h\"\n"}}).size() ==
-        1);  // private headers too
-  CHECK(brokenIncludeOrder({{"framework/src/attic/a.cpp", ""}}).size() == 1);
-  CHECK(brokenIncludeOrder({{"framework/src/page/a.cpp", ""}}).size() == 1);
-  CHECK(brokenIncludeOrder({{"laboratory/src/gpu/a.cpp", ""}}).size() == 1);
-  CHECK(brokenIncludeOrder({{"framework/src/pipeline/a.cpp", "#include \"lumivox/results/runs.h\"\n"}})
-            .size() == 1);
-  CHECK(brokenIncludeOrder({{"laboratory/src/page/a.cpp", "#include \"base/crc.h\"\n"}}).size() == 1);
-  CHECK_NONE(brokenIncludeOrder(
-      {{"laboratory/src/page/a.cpp", "#include \"base/file_set.h\"\n#include \"lumivox/base/log.h\"\n"}}));
-  CHECK(brokenIncludeOrder({{"framework/src/scene/a.cpp",
-                             "#include \"lumivox/base/log.h\"\n#include \"scene/b.h\"\n#include <vector>\n"}})
-            .empty());
+  /// How much a rule finds in one file.
+  const auto in = [](const char* path, const std::string& text, const auto& rule, const auto&... more) {
+    return rule(Sources{{path, text}}, more...).size();
+  };
+  const auto include = [](const std::string& header) { return "#include \"" + header + "\"\n"; };
+  const auto order = [&](const char* path, const std::string& text) {
+    return in(path, text, brokenIncludeOrder);
+  };
+  CHECK(order("framework/src/base/a.cpp", include("lumivox/dsl/document.h")) == 1);
+  CHECK(order("framework/include/lumivox/scene/a.h", "#include <lumivox/gpu/device.h>\n") == 1);
+  CHECK(order("framework/src/dsl/a.cpp", include("page/data.h")) == 1);  // private headers too
+  CHECK(order("framework/src/attic/a.cpp", "") == 1);
+  CHECK(order("framework/src/page/a.cpp", "") == 1);
+  CHECK(order("laboratory/src/gpu/a.cpp", "") == 1);
+  CHECK(order("framework/src/pipeline/a.cpp", include("lumivox/results/runs.h")) == 1);
+  CHECK(order("laboratory/src/page/a.cpp", include("base/crc.h")) == 1);
+  CHECK(order("laboratory/src/page/a.cpp", include("base/file_set.h") + include("lumivox/base/log.h")) == 0);
+  CHECK(order("framework/src/scene/a.cpp",
+              include("lumivox/base/log.h") + include("scene/b.h") + "#include <vector>\n") == 0);
   CHECK(brokenBuildOrder("lumivox_part(framework/base NEEDS report)\n").size() == 1);
   CHECK(brokenBuildOrder("lumivox_part(framework/scene     NEEDS base dsl LIBRARIES x)\n").empty());
 
-  CHECK(escaped({{"laboratory/src/page/a.cpp", "#include <epoxy/gl.h>\n"}}, kOpenGl).size() == 1);
-  CHECK(escaped({{"techniques/x/a.cpp", "void f() { glFinish(); int a = GL_RGBA8; }"}}, kOpenGl).size() == 2);
-  CHECK(escaped({{"framework/src/gpu/a.cpp", "#include <epoxy/gl.h>\nglFinish();"}}, kOpenGl).empty());
-  CHECK(escaped({{"tools/a.cpp", "glm::vec3 a; // glFinish()\nsay(\"glFinish()\"); glslangLike();"}}, kOpenGl)
-            .empty());
-  CHECK(escaped({{"tools/a.cpp", "rtcNewDevice(nullptr);"}}, kEmbree).size() == 1);
-  CHECK(escaped({{"framework/src/scene/a.cpp", "#include <openvdb/openvdb.h>\n"}}, kOpenVdb).size() == 1);
-  CHECK(escaped({{"framework/src/volume/a.cpp", "#include <openvdb/openvdb.h>\n"}}, kOpenVdb).empty());
-  CHECK(escaped({{"bench/x/a.cpp", "#include <openvdb/openvdb.h>\n"}}, kOpenVdb).empty());
+  const std::string gl = "#include <epoxy/gl.h>\n", vdb = "#include <openvdb/openvdb.h>\n",
+                    sqlite = "#include <sqlite3.h>\n";
+  CHECK(in("laboratory/src/page/a.cpp", gl, escaped, kOpenGl) == 1);
+  CHECK(in("techniques/x/a.cpp", "void f() { glFinish(); int a = GL_RGBA8; }", escaped, kOpenGl) == 2);
+  CHECK(in("framework/src/gpu/a.cpp", gl + "glFinish();", escaped, kOpenGl) == 0);
+  CHECK(in("tools/a.cpp", "glm::vec3 a; // glFinish()\nsay(\"glFinish()\"); glslangLike();", escaped,
+           kOpenGl) == 0);
+  CHECK(in("tools/a.cpp", "rtcNewDevice(nullptr);", escaped, kEmbree) == 1);
+  CHECK(in("framework/src/scene/a.cpp", vdb, escaped, kOpenVdb) == 1);
+  CHECK(in("framework/src/volume/a.cpp", vdb, escaped, kOpenVdb) == 0);
+  CHECK(in("bench/x/a.cpp", vdb, escaped, kOpenVdb) == 0);
+  CHECK(in("laboratory/src/page/a.cpp", sqlite + "sqlite3_open(f, &h);", escaped, kSqlite) == 2);
+  CHECK(in("laboratory/src/results/a.cpp", sqlite, escaped, kSqlite) == 0);
+  CHECK(in("laboratory/src/page/a.cpp", "html += \"<td class=\\\"x\\\">\";\n", markup) == 1);
+  CHECK(in("laboratory/src/page/a.cpp", "#include <span>\nstd::span<int> p; a = b < c; // \"<td>\"\n",
+           markup) == 0);
+  CHECK(in("tests/a.cpp", "CHECK(html == \"<p>\");\n", markup) == 0);
+  CHECK(in("laboratory/src/analysis/a.cpp", include("lumivox/results/store.h"), boundAnalysis) == 1);
+  CHECK(in("laboratory/src/analysis/a.cpp", include("lumivox/results/runs.h"), boundAnalysis) == 0);
 
-  CHECK(escaped({{"laboratory/src/page/a.cpp", "#include <sqlite3.h>\nsqlite3_open(f, &h);"}}, kSqlite)
-            .size() == 2);
-  CHECK(escaped({{"laboratory/src/results/a.cpp", "#include <sqlite3.h>\n"}}, kSqlite).empty());
-  CHECK(markup({{"laboratory/src/page/a.cpp", "html += \"<td class=\\\"x\\\">\";\n"}}).size() == 1);
-  CHECK(markup({{"laboratory/src/page/a.cpp", "#include <span>\nstd::span<int> p; a = b < c; // \"<td>\"\n"}})
-            .empty());
-  CHECK(markup({{"tests/a.cpp", "CHECK(html == \"<p>\");\n"}}).empty());
-  CHECK(boundAnalysis({{"laboratory/src/analysis/a.cpp", "#include \"lumivox/results/store.h\"\n"}}).size() ==
-        1);
-  CHECK(boundAnalysis({{"laboratory/src/analysis/a.cpp", "#include \"lumivox/results/runs.h\"\n"}}).empty());
-
-  const std::vector<std::string> two = {"cone_tracing", "shading"};
-  CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "open(\"cone_tracing\");"}}, two).size() == 1);
-  CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "ConeTracing t;"}}, two).size() == 1);
+  const std::vector<std::string> two = {"cone_tracing", "shading"}, ambient = {"ambient"};
+  const auto named = [&](const std::string& text, const std::vector<std::string>& techniques) {
+    return in("framework/src/pipeline/a.cpp", text, namedTechniques, techniques);
+  };
+  CHECK(named("open(\"cone_tracing\");", two) == 1);
+  CHECK(named("ConeTracing t;", two) == 1);
+  CHECK(named("// as in cone_tracing\nint cone_tracings;", two) == 0);
   // The technique that the guide writes has a name that is a word.
-  CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "open(\"ambient.gather\"); ambient::Gather g;"}},
-                        {"ambient"})
-            .size() == 2);
-  CHECK_NONE(namedTechniques(
-      {{"framework/src/pipeline/a.cpp", "say(\"the ambient occlusion\"); float ambient = 0;"}}, {"ambient"}));
-  CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "// as in cone_tracing\nint cone_tracings;"}}, two)
-            .empty());
-  CHECK(dependentTechniques({{"techniques/shading/a.cpp", "#include \"cone_tracing_shaders.h\"\n"}}, two)
-            .size() == 1);
-  CHECK(
-      dependentTechniques({{"techniques/shading/a.cpp", "#include \"../cone_tracing/b.h\"\n"}}, two).size() ==
-      1);
-  CHECK(dependentTechniques({{"shaders/shading/a.comp", "#include \"cone_tracing/b.glsl\"\n"}}, two).size() ==
-        1);
-  CHECK(dependentTechniques({{"shaders/toolkit/a.comp", "#include \"cone_tracing/b.glsl\"\n"}}, two).size() ==
-        1);
-  CHECK(dependentTechniques({{"techniques/shading/a.cpp", "#include \"lumivox/experiment/report.h\"\n"}}, two)
-            .size() == 1);
-  CHECK(dependentTechniques(
-            {{"techniques/shading/a.cpp",
-              "#include \"shading_shaders.h\"\n#include \"lumivox/pipeline/pass.h\"\n"},
-             {"shaders/shading/a.comp", "#include \"common/brdf.glsl\"\n#include \"toolkit/slots.glsl\"\n"}},
-            two)
-            .empty());
+  CHECK(named("open(\"ambient.gather\"); ambient::Gather g;", ambient) == 2);
+  CHECK(named("say(\"the ambient occlusion\"); float ambient = 0;", ambient) == 0);
+  const auto dependent = [&](const char* path, const std::string& text) {
+    return in(path, text, dependentTechniques, two);
+  };
+  CHECK(dependent("techniques/shading/a.cpp", include("cone_tracing_shaders.h")) == 1);
+  CHECK(dependent("techniques/shading/a.cpp", include("../cone_tracing/b.h")) == 1);
+  CHECK(dependent("shaders/shading/a.comp", include("cone_tracing/b.glsl")) == 1);
+  CHECK(dependent("shaders/toolkit/a.comp", include("cone_tracing/b.glsl")) == 1);
+  CHECK(dependent("techniques/shading/a.cpp", include("lumivox/experiment/report.h")) == 1);
+  CHECK(dependent("techniques/shading/a.cpp",
+                  include("shading_shaders.h") + include("lumivox/pipeline/pass.h")) == 0);
+  CHECK(dependent("shaders/shading/a.comp", include("common/brdf.glsl") + include("toolkit/slots.glsl")) == 0);
 
   const std::set<std::string> whole = {"techniques/shading/CMakeLists.txt",
                                        "techniques/shading/shading.cpp",
