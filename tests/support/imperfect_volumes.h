@@ -4,15 +4,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "lumivox/measure/voxels.h"
-#include "lumivox/pipeline/pass.h"
 #include "support/bit_grids.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test::volumes {
 
@@ -37,11 +35,7 @@ inline double irradiance(const glm::dvec4& coefficients, const glm::dvec3& norma
 
 inline gpu::TextureRef volumeTexture(const glm::ivec3& size, gpu::Format format,
                                      const std::vector<float>& values) {
-  auto texture = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{gpu::TextureKind::d3, format, size.x, size.y, size.z, 1},
-      "test volume");
-  texture->uploadFloats(0, values);
-  return texture;
+  return textureOf(volumeOf(size, format), values);
 }
 
 /// A volume of voxels of a metre from the origin on.
@@ -139,28 +133,10 @@ struct ReadPoint {
 
 /// One row of pixels, one for each point; white.
 inline GBuffer seen(const std::vector<ReadPoint>& points) {
-  std::vector<float> positions, normals, geometric, diffuse;
-  for (const ReadPoint& point : points) {
-    for (int c = 0; c < 3; ++c) {
-      positions.push_back(point.place[c]);
-      normals.push_back(point.normal[c]);
-      geometric.push_back(point.normal[c]);
-      diffuse.push_back(1.0f);
-    }
-    positions.push_back(1.0f);
-    normals.push_back(1.0f);
-    geometric.push_back(0.0f);
-    diffuse.push_back(1.0f);
-  }
-  const auto image = [&](const std::vector<float>& values) {
-    auto texture = std::make_shared<gpu::Texture>(
-        device(),
-        gpu::TextureDescription{.format = gpu::Format::rgba32f, .width = static_cast<int>(points.size())},
-        "test g-buffer");
-    texture->uploadFloats(0, values);
-    return texture;
-  };
-  return {image(positions), image(normals), image(geometric), image(diffuse), nullptr, nullptr};
+  return gbufferWhere({static_cast<int>(points.size()), 1}, [&](int x, int) {
+    const ReadPoint& point = points[static_cast<std::size_t>(x)];
+    return SeenSurface{point.place, point.normal};
+  });
 }
 
 /// Every voxel of the walls of a closed room, without the edges, as a surface point so far before its middle.
@@ -180,46 +156,12 @@ inline std::vector<ReadPoint> wallsOf(const Volume& room, float before = 0.0f) {
   return points;
 }
 
-struct Setting {
-  const char* name;
-  double number = 0;
-  const char* word = nullptr;
-};
-
-/// A pass of the technique over a volume.
-class Runner {
- public:
-  Runner(const char* pass, const Scene& scene, int width = 1)
-      : scene_(withImage(scene, width)),
-        harness_(std::make_unique<PassHarness>(device(), techniques(), "imperfect_volumes", pass, *scene_,
-                                               snapshotOf(*scene_, 0.0))) {}
-  PassHarness& harness() { return *harness_; }
-  template <class Port>
-  Runner& in(const char* name, Port port) {
-    harness_->setInput(name, std::move(port));
-    return *this;
-  }
-  Runner& with(const std::vector<Setting>& settings) {
-    for (const Setting& one : settings)
-      one.word != nullptr ? harness_->setParameter(one.name, std::string(one.word))
-                          : harness_->setParameter(one.name, one.number);
-    return *this;
-  }
-  template <class Port>
-  Port run(const char* output, std::uint64_t seed = 1) {
-    harness_->run(seed);
-    return harness_->output<Port>(output);
-  }
-
- private:
-  static std::unique_ptr<Scene> withImage(Scene scene, int width) {
-    scene.cameras.front().width = width;
-    scene.cameras.front().height = 1;
-    return std::make_unique<Scene>(std::move(scene));
-  }
-  std::unique_ptr<Scene> scene_;  // which the harness refers to
-  std::unique_ptr<PassHarness> harness_;
-};
+/// A pass of the technique over a row of pixels.
+inline LonePass volumePass(const std::string& pass, Scene scene, int width = 1) {
+  scene.cameras.front().width = width;
+  scene.cameras.front().height = 1;
+  return {"imperfect_volumes." + pass, scene};
+}
 
 inline Scene underSky(double radiance) {
   SceneBuilder builder;
@@ -228,8 +170,8 @@ inline Scene underSky(double radiance) {
 }
 
 /// `march` over a volume, with all that it may read.
-inline Runner marching(const Volume& volume, const std::vector<Setting>& settings, double sky = 0.0) {
-  Runner runner("march", underSky(sky));
+inline LonePass marching(const Volume& volume, const Settings& settings, double sky = 0.0) {
+  LonePass runner = volumePass("march", underSky(sky));
   runner.in("opacity", volume.opacity())
       .in("reflected", volume.reflected())
       .in("attributes", volume.attributes())
@@ -237,8 +179,8 @@ inline Runner marching(const Volume& volume, const std::vector<Setting>& setting
       .with(settings);
   return runner;
 }
-inline ShGrid arriving(const Volume& volume, const std::vector<Setting>& settings, double sky = 0.0) {
-  return marching(volume, settings, sky).run<ShGrid>("incoming");
+inline ShGrid arriving(const Volume& volume, const Settings& settings, double sky = 0.0) {
+  return marching(volume, settings, sky).out<ShGrid>("incoming");
 }
 
 /// The first channel of a voxel.
@@ -252,29 +194,45 @@ inline glm::dvec4 coefficientsIn(const ShGrid& light, const glm::ivec3& voxel) {
 
 /// E / pi of each point, of the first channel.
 inline std::vector<double> gathered(const Volume& volume, const ShGrid& light,
-                                    const std::vector<ReadPoint>& points,
-                                    const std::vector<Setting>& settings = {}, double sky = 0.0,
-                                    const char* output = "diffuse") {
-  Runner runner("gather", underSky(sky), static_cast<int>(points.size()));
+                                    const std::vector<ReadPoint>& points, const Settings& settings = {},
+                                    double sky = 0.0, const char* output = "diffuse") {
+  LonePass runner = volumePass("gather", underSky(sky), static_cast<int>(points.size()));
   runner.in("gbuffer", seen(points))
       .in("incoming", light)
       .in("visibility", light)
       .in("opacity", volume.opacity())
       .in("attributes", volume.attributes())
       .with(settings);
-  const std::vector<float> values = runner.run<Image>(output).texture->downloadFloats(0);
+  const std::vector<float> values = runner.out<Image>(output).texture->downloadFloats(0);
   std::vector<double> result;
   for (std::size_t i = 0; i < points.size(); ++i) result.push_back(values[4 * i]);
   return result;
 }
 inline double gatheredAt(const Volume& volume, const ShGrid& light, const ReadPoint& point,
-                         const std::vector<Setting>& settings = {}, const char* output = "diffuse") {
+                         const Settings& settings = {}, const char* output = "diffuse") {
   return gathered(volume, light, {point}, settings, 0.0, output).front();
 }
 inline double meanOf(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Light of the same kind in every voxel: its radiance by channel, the same from all sides.
+template <class RadianceOf>
+ShGrid evenLight(const Volume& volume, const RadianceOf& radianceOf) {
+  ShGrid light;
+  light.quantity = ShGrid::Quantity::radiance;
+  ShGrid::Level level{volume.grid(), {}};
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float> values;
+    volume.forEach([&](const glm::ivec3& voxel) {
+      values.push_back(constant(radianceOf(voxel, c)).x);
+      values.insert(values.end(), 3, 0.0f);
+    });
+    level.coefficients[static_cast<std::size_t>(c)] =
+        volumeTexture(volume.size(), gpu::Format::rgba32f, values);
+  }
+  light.levels.push_back(level);
+  return light;
 }
 
 }  // namespace lumivox::test::volumes

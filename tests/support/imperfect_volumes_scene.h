@@ -16,8 +16,6 @@
 
 namespace lumivox::test::volumes {
 
-using near_field::committed;
-
 /// A scene as an imperfect volume that is lit.
 struct Lit {
   Scene scene;
@@ -28,24 +26,15 @@ struct Lit {
   ShGrid reflected;
   Lit(const std::string& name, int resolution) : Lit(committed(name), resolution) {}
   Lit(Scene made, int resolution) : scene(std::move(made)), snapshot(snapshotOf(scene, 0.0)) {
-    const auto pass = [&](const char* technique, const char* which) {
-      return PassHarness(device(), techniques(), technique, which, scene, snapshot);
-    };
-    PassHarness points = pass("voxelization", "points"), average = pass("voxelization", "average"),
-                shadow = pass("direct_lighting", "shadow_map"), inject = pass("imperfect_volumes", "inject");
-    points.setParameter("resolution", resolution);
-    points.setParameter("adaptive", std::string("on"));
-    points.run();
-    average.setInput("fragments", points.output<VoxelFragments>("fragments"));
-    average.run();
-    shadow.run();
-    inject.setInput("fragments", points.output<VoxelFragments>("fragments"));
-    inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
-    inject.run();
-    opacity = average.output<OccupancyGrid>("opacity");
-    attributes = average.output<AttributeGrid>("attributes");
-    bits = average.output<BinaryGrid>("bits");
-    reflected = inject.output<ShGrid>("reflected");
+    const VoxelFragments points =
+        LonePass("voxelization.points", scene, {{"resolution", resolution}, {"adaptive", "on"}})
+            .out<VoxelFragments>("fragments");
+    LonePass average("voxelization.average", scene), inject("imperfect_volumes.inject", scene);
+    average.in("fragments", points);
+    opacity = average.out<OccupancyGrid>("opacity");
+    attributes = average.out<AttributeGrid>("attributes");
+    bits = average.out<BinaryGrid>("bits");
+    reflected = inject.in("fragments", points).in("shadow", shadowsOf(scene)).out<ShGrid>("reflected");
   }
   const GridPlacement& grid() const { return opacity.grid; }
   glm::vec3 middleOf(const glm::ivec3& voxel) const {

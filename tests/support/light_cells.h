@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "../../techniques/light_propagation_volumes/occluded_faces.h"
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
@@ -27,23 +25,7 @@ inline std::size_t at(int n, int x, int y, int z) {
 }
 
 inline gpu::TextureRef volume(int n, gpu::Format format) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = format;
-  description.width = description.height = description.depth = n;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test cells");
-  texture->clear(glm::vec4(0.0f));
-  return texture;
-}
-
-/// An image of 8 x 8 pixels of one value, as a layer of a g-buffer.
-inline gpu::TextureRef filledPixels(const glm::vec4& value) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-  texture->clear(value);
-  return texture;
+  return filled(volumeOf(glm::ivec3(n), format), glm::vec4(0.0f));
 }
 
 using light_propagation_volumes::OccludedFaces;
@@ -112,32 +94,22 @@ inline SceneBuilder emptyScene(float environment = 0.0f) {
   return builder;
 }
 
-/// The pass with its parameters; numbers and words.
-class Propagation {
+/// The pass with its parameters.
+class Propagation : public LonePass {
  public:
-  explicit Propagation(const Scene& scene)
-      : harness_(device(), techniques(), "light_propagation_volumes", "propagate", scene,
-                 snapshotOf(scene, 0.0)) {}
-  Propagation& set(const char* name, double value) {
-    harness_.setParameter(name, value);
-    return *this;
-  }
-  Propagation& set(const char* name, const char* word) {
-    harness_.setParameter(name, std::string(word));
+  explicit Propagation(const Scene& scene) : LonePass("light_propagation_volumes.propagate", scene) {}
+  template <class Value>
+  Propagation& set(const char* name, const Value& value) {
+    with({{name, value}});
     return *this;
   }
   Propagation& run(const LitCells& light) { return run(light, light.faces); }
   Propagation& run(const ShGrid& light, const OccludedFaces& faces) {
-    harness_.setInput("light", light);
-    harness_.setInput("faces", faces);
-    harness_.run();
+    in("light", light).in("faces", faces).LonePass::run();
     return *this;
   }
-  ShGrid grid(const char* port) { return harness_.output<ShGrid>(port); }
+  ShGrid grid(const char* port) { return out<ShGrid>(port); }
   Cells cells(const char* port) { return grid(port).levels[0].coefficients[0]->downloadFloats(0); }
-
- private:
-  PassHarness harness_;
 };
 
 }  // namespace lumivox::test

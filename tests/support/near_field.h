@@ -6,89 +6,48 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/toolkit/light_samples.h"
 #include "support/bit_grids.h"
-#include "support/scene_builder.h"
+#include "support/passes.h"
 
 namespace lumivox::test::near_field {
 
-inline gpu::TextureRef filledLayers(int side, int layers, const glm::vec4& value) {
-  auto texture = std::make_shared<gpu::Texture>(
-      device(),
-      gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::rgba32f, side, side, layers, 1},
-      "test layers");
-  texture->clear(value);
-  return texture;
-}
-
-/// The same surface point in all pixels.
-inline GBuffer pointsAt(const glm::vec3& position, const glm::vec3& normal, int width = 8, int height = 8) {
-  const gpu::TextureDescription image{.format = gpu::Format::rgba32f, .width = width, .height = height};
-  const auto filled = [&](const glm::vec4& value) {
-    auto texture = std::make_shared<gpu::Texture>(device(), image, "test g-buffer");
-    texture->clear(value);
-    return texture;
-  };
-  return {filled(glm::vec4(position, 1)),
-          filled(glm::vec4(normal, 1)),
-          filled(glm::vec4(normal, 0)),
-          filled(glm::vec4(0.5f)),
-          nullptr,
-          nullptr};
-}
-
-struct Setting {
-  const char* name;
-  double number = 0;
-  const char* word = nullptr;
-};
-
 /// The pass `gather` over a grid of metre-wide voxels.
-class Gatherer {
+class Gatherer : public LonePass {
  public:
   explicit Gatherer(const BinaryGrid& bits, const Scene& scene = SceneBuilder().scene, int width = 8,
                     int height = 8)
-      : scene_(withImage(scene, width, height)),
-        harness_(std::make_unique<PassHarness>(device(), techniques(), "near_field_voxels", "gather", *scene_,
-                                               snapshotOf(*scene_, 0.0))) {
-    harness_->setInput("bits", bits);
+      : LonePass("near_field_voxels.gather", withImage(scene, width, height)) {
+    in("bits", bits);
   }
-  PassHarness& harness() { return *harness_; }
-  Gatherer& at(const glm::vec3& position, const glm::vec3& normal, int width = 8, int height = 8) {
-    harness_->setInput("gbuffer", pointsAt(position, normal, width, height));
+  Gatherer& at(const glm::vec3& position, const glm::vec3& normal, const glm::ivec2& size = {8, 8}) {
+    in("gbuffer", gbufferAt({position, normal, glm::vec3(0.5f)}, size));
     return *this;
   }
   Gatherer& map(const ReflectiveShadowMap& map) {
-    harness_->setInput("map", map);
+    in("map", map);
     return *this;
   }
-  Gatherer& with(std::initializer_list<Setting> settings) {
-    for (const Setting& one : settings)
-      one.word != nullptr ? harness_->setParameter(one.name, std::string(one.word))
-                          : harness_->setParameter(one.name, one.number);
+  Gatherer& with(const Settings& settings) {
+    LonePass::with(settings);
     return *this;
   }
-  std::vector<float> run(const char* output = "arriving") {
-    harness_->run();
-    return harness_->output<Image>(output).texture->downloadFloats(0);
-  }
+  /// What arrives, rgba.
+  std::vector<float> arriving() { return floats("arriving"); }
   /// The first channel's mean over the pixels.
-  double mean(const char* output = "arriving") {
-    const std::vector<float> values = run(output);
+  double mean(const char* output) {
+    const std::vector<float> values = floats(output);
     double sum = 0.0;
     for (std::size_t i = 0; i < values.size(); i += 4) sum += values[i];
     return 4.0 * sum / static_cast<double>(values.size());
   }
 
  private:
-  static std::unique_ptr<Scene> withImage(Scene scene, int width, int height) {
+  static Scene withImage(Scene scene, int width, int height) {
     scene.cameras.front().width = width;
     scene.cameras.front().height = height;
-    return std::make_unique<Scene>(std::move(scene));
+    return scene;
   }
-  std::unique_ptr<Scene> scene_;  // which the harness refers to
-  std::unique_ptr<PassHarness> harness_;
 };
 
 inline constexpr glm::vec3 kUp(0.0f, 1.0f, 0.0f);
@@ -97,19 +56,6 @@ inline Scene underSky(float radiance) {
   SceneBuilder builder;
   builder.scene.environment = glm::vec3(radiance);
   return builder.scene;
-}
-
-/// Form factor from a point with a normal to a polygon in front of it (Lambert).
-inline double formFactor(const glm::dvec3& point, const glm::dvec3& normal,
-                         const std::vector<glm::dvec3>& corners) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - point),
-                     b = glm::normalize(corners[(i + 1) % corners.size()] - point);
-    const glm::dvec3 across = glm::cross(a, b);
-    sum += std::atan2(glm::length(across), glm::dot(a, b)) * glm::dot(glm::normalize(across), normal);
-  }
-  return std::abs(sum) / (2.0 * kPi);
 }
 
 /// Lights of a scene as samples, and a map of their layers in which all texels are alike.
@@ -122,14 +68,11 @@ inline ReflectiveShadowMap mapOf(const Scene& scene, int side, const glm::vec4& 
   REQUIRE(map.layerCount > 0);
   std::vector<glm::mat4> views;
   for (const LightView& view : set.views) views.push_back(view.worldToClip);
-  map.lights =
-      std::make_shared<gpu::Buffer>(device(), set.samples.size() * sizeof(LightSampleData), "lights");
-  map.lights->uploadValues(std::span<const LightSampleData>(set.samples));
-  map.views = std::make_shared<gpu::Buffer>(device(), views.size() * sizeof(glm::mat4), "views");
-  map.views->uploadValues(std::span<const glm::mat4>(views));
-  map.position = filledLayers(side, map.layerCount, position);
-  map.normal = filledLayers(side, map.layerCount, normal);
-  map.flux = filledLayers(side, map.layerCount, flux);
+  map.lights = bufferOf(set.samples);
+  map.views = bufferOf(views);
+  map.position = filled(layers(side, side, map.layerCount), position);
+  map.normal = filled(layers(side, side, map.layerCount), normal);
+  map.flux = filled(layers(side, side, map.layerCount), flux);
   return map;
 }
 
@@ -162,8 +105,22 @@ struct OneVoxel {
     Gatherer result(gridOf(set));
     result.at({8.5f, 2.0f, 8.5f}, kUp)
         .map(map)
-        .with({{"rays", 1}, {"spread", 0}, {"hit", 0, "centre"}, {"front", 0, "off"}});
+        .with({{"rays", 1}, {"spread", 0}, {"hit", "centre"}, {"front", "off"}});
     return result;
+  }
+  /// Whether the map lights a receiver above that looks down, by ours or as printed. No component of its ray
+  /// is 0, by which the printed walk divides.
+  glm::dvec3 down = glm::normalize(glm::dvec3(0.01, -1, 0.013)),
+             above = glm::dvec3(centre) - (12.0 - 6.5) / -down.y * down;
+  bool isLitFromAbove(bool asPrinted, const ReflectiveShadowMap& map, const Settings& settings = {}) const {
+    Gatherer result = gatherer(map);
+    result.at(above, down)
+        .with({{"tolerance", 1},
+               {"front", "on"},
+               {"hit", asPrinted ? "printed" : "centre"},
+               {"as_published", asPrinted ? "on" : "off"}})
+        .with(settings);
+    return result.arriving()[0] > 0.0f;
   }
 };
 

@@ -8,16 +8,11 @@
 #include <vector>
 
 #include "lumivox/measure/voxels.h"
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/toolkit/light_samples.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 #include "support/voxel_fragments.h"
 
 namespace lumivox::test::near_field {
-
-inline Scene committed(const std::string& name) {
-  return loadScene(sourceDirectory() / "scenes" / (name + ".scene"));
-}
 
 /// A scene as bits and as what its camera sees.
 struct Seen {
@@ -28,16 +23,8 @@ struct Seen {
   Seen(const std::string& name, int resolution, int side) : scene(committed(name)) {
     scene.cameras.front().width = scene.cameras.front().height = side;
     snapshot = snapshotOf(scene, 0.0);
-    PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot),
-        average(device(), techniques(), "voxelization", "average", scene, snapshot),
-        view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
-    voxels.setParameter("resolution", resolution);
-    voxels.run();
-    average.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-    average.run();
-    view.run();
-    bits = average.output<BinaryGrid>("bits");
-    gbuffer = view.output<GBuffer>("gbuffer");
+    bits = bitsIn(scene, resolution);
+    gbuffer = gbufferOf(scene);
   }
 };
 

@@ -2,13 +2,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
-#include "lumivox/pipeline/pass.h"
-#include "scene_builder.h"
-#include "techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
@@ -18,13 +14,9 @@ struct Map {
 };
 
 inline Map render(const Scene& scene, int size) {
-  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "render", scene,
-                      snapshotOf(scene, 0.0));
-  harness.setParameter("size", size);
-  harness.setParameter("area_size", size);
-  harness.run();
   Map map;
-  map.value = harness.output<ReflectiveShadowMap>("map");
+  map.value = LonePass("reflective_shadow_maps.render", scene, {{"size", size}, {"area_size", size}})
+                  .out<ReflectiveShadowMap>("map");
   const std::vector<float> flux = map.value.flux->downloadFloats(0),
                            normal = map.value.normal->downloadFloats(0),
                            position = map.value.position->downloadFloats(0);
@@ -41,52 +33,27 @@ inline SceneBuilder closedBox(float albedo) {
   return builder;
 }
 
-inline GBuffer surfacePoints(const glm::vec3& position, const glm::vec3& normal) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  const auto filled = [&](const glm::vec4& value) {
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-    texture->clear(value);
-    return texture;
-  };
-  return {filled(glm::vec4(position, 1)),
-          filled(glm::vec4(normal, 1)),
-          filled(glm::vec4(normal, 0)),
-          filled(glm::vec4(1.0f)),
-          nullptr,
-          nullptr};
-}
-
 /// A map of one texel a layer, each with a place, a normal with an area, and a flux.
 struct Texel {
   glm::vec4 position, normal, flux;
 };
 inline ReflectiveShadowMap mapOf(const std::vector<Texel>& texels) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d2Array;
-  description.format = gpu::Format::rgba32f;
-  description.depth = static_cast<int>(texels.size());
-  const auto filled = [&](glm::vec4 Texel::*member) {
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "test map");
+  const auto texture = [&](glm::vec4 Texel::*member) {
     std::vector<float> floats;
     for (const Texel& texel : texels)
       for (int c = 0; c < 4; ++c) floats.push_back((texel.*member)[c]);
-    texture->uploadFloats(0, floats);
-    return texture;
+    return textureOf(layers(1, 1, static_cast<int>(texels.size())), floats);
   };
   ReflectiveShadowMap map;
-  map.position = filled(&Texel::position);
-  map.normal = filled(&Texel::normal);
-  map.flux = filled(&Texel::flux);
-  map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
-  map.views = std::make_shared<gpu::Buffer>(device(), 64 * texels.size(), "views");
+  map.position = texture(&Texel::position);
+  map.normal = texture(&Texel::normal);
+  map.flux = texture(&Texel::flux);
+  map.lights = bufferOf(std::vector<glm::mat4>(1));
+  map.views = bufferOf(std::vector<glm::mat4>(texels.size()));
   map.lightCount = 1;
   map.layerCount = static_cast<int>(texels.size());
   return map;
 }
-
-using Settings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
 
 struct TakenLight {
   glm::vec4 positionArea, normal, flux;
@@ -101,50 +68,38 @@ inline std::vector<TakenLight> lightsIn(const SurfaceLights& lights) {
 }
 
 inline SurfaceLights choose(const ReflectiveShadowMap& map, const Settings& settings) {
-  const Scene scene = SceneBuilder().scene;
-  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "choose", scene,
-                      snapshotOf(scene, 0.0));
-  harness.setInput("map", map);
-  for (const auto& [name, value] : settings)
-    std::visit([&, &key = name](const auto& set) { harness.setParameter(key, set); }, value);
-  harness.run();
-  return harness.output<SurfaceLights>("lights");
+  return LonePass("reflective_shadow_maps.choose", SceneBuilder().scene, settings)
+      .in("map", map)
+      .out<SurfaceLights>("lights");
 }
 
-/// By `method` of gather, or, with `flux`, from as many chosen lights.
-inline void gatherBy(PassHarness& harness, const ReflectiveShadowMap& map, const std::string& method,
-                     int samples) {
-  if (method == "flux") {
-    harness.setInput("lights", choose(map, {{"lights", static_cast<double>(samples)}}));
-  } else {
-    harness.setInput("map", map);
-    harness.setParameter("method", method);
-    harness.setParameter("samples", samples);
-  }
-  harness.run();
+/// By `method` of gather, or, with `flux`, from as many chosen lights; `pass` has a g-buffer.
+inline ImageBuffer gatherBy(LonePass& pass, const ReflectiveShadowMap& map, const std::string& method,
+                            int samples) {
+  if (method == "flux")
+    pass.in("lights", choose(map, {{"lights", samples}}));
+  else
+    pass.in("map", map).with({{"method", method}, {"samples", samples}});
+  return pass.image("diffuse");
 }
 
-/// The light reflected by a white surface at the origin that faces up, by so many samples.
-inline glm::vec3 reflectedAtOrigin(const ReflectiveShadowMap& map, const char* method, int samples) {
+/// The irradiance of a surface that faces up.
+inline glm::vec3 irradianceAt(const glm::vec3& place, const ReflectiveShadowMap& map,
+                              const std::string& method, int samples, const Settings& settings = {},
+                              const Scene* seen = nullptr) {
   SceneBuilder builder;
   builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
-  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
-  gatherBy(harness, map, method, samples);
-  const ImageBuffer image = imageOf(*harness.output<Image>("diffuse").texture);
-  return {image.at(3, 3, 0), image.at(3, 3, 1), image.at(3, 3, 2)};
+  LonePass pass("reflective_shadow_maps.gather", seen != nullptr ? *seen : builder.scene, settings);
+  pass.in("gbuffer", gbufferAt({place, {0, 1, 0}}));
+  const ImageBuffer image = gatherBy(pass, map, method, samples);
+  return static_cast<float>(kPi) * glm::vec3(image.at(3, 3, 0), image.at(3, 3, 1), image.at(3, 3, 2));
 }
 
-inline ImageBuffer gather(const Scene& scene, const ReflectiveShadowMap& map, const char* method,
+inline ImageBuffer gather(const Scene& scene, const ReflectiveShadowMap& map, const std::string& method,
                           int samples) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
-  view.run();
-  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", scene, snapshot);
-  harness.setInput("gbuffer", view.output<GBuffer>("gbuffer"));
-  gatherBy(harness, map, method, samples);
-  return imageOf(*harness.output<Image>("diffuse").texture);
+  LonePass pass("reflective_shadow_maps.gather", scene);
+  pass.in("gbuffer", gbufferOf(scene));
+  return gatherBy(pass, map, method, samples);
 }
 
 }  // namespace lumivox::test

@@ -25,9 +25,7 @@ class Transported {
  public:
   Transported(const std::string& name, int resolution, const Picture& picture)
       : lit_(sized(name, picture), resolution), host_(lit_) {
-    PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", lit_.scene, lit_.snapshot);
-    view.run();
-    gbuffer_ = view.output<GBuffer>("gbuffer");
+    gbuffer_ = gbufferOf(lit_.scene);
     positions_ = gbuffer_.position->downloadFloats(0);
     albedo_ = gbuffer_.diffuse->downloadFloats(0);
   }
@@ -117,24 +115,21 @@ class Transported {
 
   /// By the passes.
   Pixels passes(const char* walk, const char* source, int rays, std::uint64_t seed = 1) const {
-    PassHarness march(device(), techniques(), "imperfect_volumes", "march", lit_.scene, lit_.snapshot);
-    march.setInput("opacity", lit_.opacity);
-    march.setInput("reflected", lit_.reflected);
-    march.setInput("attributes", lit_.attributes);
-    march.setInput("bits", lit_.bits);
-    march.setInput("gbuffer", gbuffer_);
-    march.setParameter("rays", rays);
-    march.setParameter("walk", std::string(walk));
-    march.setParameter("source", std::string(source));
-    march.run(seed);
-    PassHarness gather(device(), techniques(), "imperfect_volumes", "gather", lit_.scene, lit_.snapshot);
-    gather.setInput("gbuffer", gbuffer_);
-    gather.setInput("incoming", march.output<ShGrid>("incoming"));
-    gather.setInput("visibility", march.output<ShGrid>("incoming"));  // which nobody looks at
-    gather.setInput("opacity", lit_.opacity);
-    gather.setInput("attributes", lit_.attributes);
-    gather.run();
-    const std::vector<float> reflected = gather.output<Image>("diffuse").texture->downloadFloats(0);
+    LonePass march("imperfect_volumes.march", lit_.scene,
+                   {{"rays", rays}, {"walk", walk}, {"source", source}});
+    march.in("opacity", lit_.opacity)
+        .in("reflected", lit_.reflected)
+        .in("attributes", lit_.attributes)
+        .in("bits", lit_.bits)
+        .in("gbuffer", gbuffer_)
+        .run(seed);
+    LonePass gather("imperfect_volumes.gather", lit_.scene);
+    gather.in("gbuffer", gbuffer_)
+        .in("incoming", march.out<ShGrid>("incoming"))
+        .in("visibility", march.out<ShGrid>("incoming"))  // which nobody looks at
+        .in("opacity", lit_.opacity)
+        .in("attributes", lit_.attributes);
+    const std::vector<float> reflected = gather.floats("diffuse");
     Pixels result(positions_.size() / 4);
     for (std::size_t i = 0; i < result.size(); ++i)
       for (int c = 0; c < 3; ++c) {

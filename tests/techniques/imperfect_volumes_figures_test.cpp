@@ -10,13 +10,10 @@ using namespace lumivox::test::volumes;
 
 namespace {
 
-GBuffer gbufferOf(const Scene& scene, const Picture& picture) {
-  Scene sized = scene;
-  sized.cameras.front().width = picture.width;
-  sized.cameras.front().height = picture.height;
-  PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", sized, snapshotOf(sized, 0.0));
-  view.run();
-  return view.output<GBuffer>("gbuffer");
+GBuffer gbufferOf(Scene scene, const Picture& picture) {
+  scene.cameras.front().width = picture.width;
+  scene.cameras.front().height = picture.height;
+  return test::gbufferOf(scene);
 }
 
 /// Mean indirect light of both sides of the vase, as a camera above its rim sees them.

@@ -4,7 +4,6 @@
 #include "lumivox/toolkit/light_samples.h"
 #include "support/imperfect_volumes.h"
 #include "support/made_fragments.h"
-#include "support/near_field_scene.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -25,24 +24,20 @@ ShadowMap unshadowed(const Scene& scene) {
   for (LightSampleData& sample : set.samples) sample.firstView = -1;
   ShadowMap map;
   map.lightCount = static_cast<int>(set.samples.size());
-  map.lights =
-      std::make_shared<gpu::Buffer>(device(), set.samples.size() * sizeof(LightSampleData), "lights");
-  map.lights->uploadValues(std::span<const LightSampleData>(set.samples));
-  map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
-  map.depth = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::depth32f, 1, 1, 1, 1},
-      "depth");
+  map.lights = bufferOf(set.samples);
+  map.views = bufferOf<glm::mat4>({glm::mat4(0.0f)});
+  map.depth = filled({gpu::TextureKind::d2Array, gpu::Format::depth32f}, glm::vec4(0.0f));
   return map;
 }
 
-ShGrid injected(const Scene& scene, const std::vector<FragmentData>& fragments,
-                const std::vector<Setting>& settings = {}, const glm::vec3& low = glm::vec3(0.0f)) {
-  Runner inject("inject", scene);
+ShGrid injected(const Scene& scene, const std::vector<FragmentData>& fragments, const Settings& settings = {},
+                const glm::vec3& low = glm::vec3(0.0f)) {
+  LonePass inject = volumePass("inject", scene);
   // A list over cells of a metre has voxels of half of one.
   inject.in("fragments", listOver({low, 1.0f, glm::ivec3(4)}, fragments))
       .in("shadow", unshadowed(scene))
       .with(settings);
-  return inject.run<ShGrid>("reflected");
+  return inject.out<ShGrid>("reflected");
 }
 
 /// Flux of two bands through a side, over pi.
@@ -62,13 +57,13 @@ TEST_CASE("a lit surface sends albedo E cos / pi from its lit side and none from
     const std::vector<FragmentData> list{squareAt({1.25, 1.25, 1.25}, normal)};
     INFO((fromBehind ? "from behind" : "from the front"));
     for (const char* precision : {"float", "half"}) {
-      const ShGrid light = injected(scene, list, {{"precision", 0, precision}});
+      const ShGrid light = injected(scene, list, {{"precision", precision}});
       CHECK(light.quantity == ShGrid::Quantity::radiance);
       CHECK(sent(light, {2, 2, 2}, lit) == Approx(radiance).epsilon(0.005));
       CHECK(std::abs(sent(light, {2, 2, 2}, -lit)) < 0.005 * radiance);
     }
     // A clamped cosine of the same flux: two bands let a sixteenth of it out backwards.
-    const ShGrid light = injected(scene, list, {{"lobe", 0, "cosine"}});
+    const ShGrid light = injected(scene, list, {{"lobe", "cosine"}});
     CHECK(sent(light, {2, 2, 2}, lit) == Approx(radiance * 7.0 / 8.0).epsilon(0.005));
     CHECK(sent(light, {2, 2, 2}, -lit) == Approx(-radiance / 8.0).epsilon(0.005));
     CHECK(sent(light, {2, 2, 2}, lit) - sent(light, {2, 2, 2}, -lit) == Approx(radiance).epsilon(0.005));
@@ -90,13 +85,11 @@ TEST_CASE("direct light that fragments bring along is that of the side seen, and
       FragmentData square = squareAt({1.25, 1.25, 1.25}, {0, 0, 1});
       if (behind) square.offset |= kSeenBehind;
       VoxelFragments list = listOver({glm::vec3(0.0f), 1.0f, glm::ivec3(4)}, {square});
-      const std::array<std::uint32_t, 1> words{192u | 192u << 8 | 192u << 16 | 128u << 24};
-      list.reflected = std::make_shared<gpu::Buffer>(device(), sizeof(words), "reflected");
-      list.reflected->uploadValues(std::span<const std::uint32_t>(words));
-      Runner inject("inject", scene);
+      list.reflected = bufferOf<std::uint32_t>({192u | 192u << 8 | 192u << 16 | 128u << 24});
+      LonePass inject = volumePass("inject", scene);
       inject.in("fragments", list);
       if (lights) inject.in("shadow", unshadowed(scene));
-      const ShGrid light = inject.run<ShGrid>("reflected");
+      const ShGrid light = inject.out<ShGrid>("reflected");
       CHECK(sent(light, {2, 2, 2}, {0, 0, 1}) ==
             Approx(behind ? (lights ? front : 0.0) : kKnown).epsilon(0.005).margin(0.005));
       CHECK(sent(light, {2, 2, 2}, {0, 0, -1}) ==
@@ -107,28 +100,24 @@ TEST_CASE("direct light that fragments bring along is that of the side seen, and
 TEST_CASE("a volume lit by the image is the volume lit by the lights, voxel by voxel, on the Cornell box") {
   // Sec. 3.2: visible points take the light of the image; the lights are the same. Words have 8 bits a
   // channel, 1/256 of the largest; pixels whose light is partly specular differ, and the box is diffuse.
-  const Scene scene = near_field::committed("cornell");
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  const auto pass = [&](const char* technique, const char* name) {
-    return PassHarness(device(), techniques(), technique, name, scene, snapshot);
-  };
-  PassHarness gbuffer = pass("direct_lighting", "gbuffer"), maps = pass("direct_lighting", "shadow_map"),
-              shade = pass("direct_lighting", "shade");
-  gbuffer.run();
-  maps.run();
-  shade.setInput("gbuffer", gbuffer.output<GBuffer>("gbuffer"));
-  shade.setInput("shadow", maps.output<ShadowMap>("depth"));
-  shade.run();
+  const Scene scene = committed("cornell");
+  const GBuffer gbuffer = gbufferOf(scene);
+  const ShadowMap shadow = shadowsOf(scene);
   const auto reflected = [&](bool byImage) {
-    PassHarness voxels = pass("voxelization", "reproject"), inject = pass("imperfect_volumes", "inject");
-    voxels.setParameter("resolution", 32);
-    voxels.setInput("gbuffer", gbuffer.output<GBuffer>("gbuffer"));
-    if (byImage) voxels.setInput("direct", shade.output<Image>("radiance"));
-    voxels.run();
-    inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-    inject.setInput("shadow", maps.output<ShadowMap>("depth"));
-    inject.run();
-    return inject.output<ShGrid>("reflected").levels[0].coefficients[1]->downloadFloats(0);
+    LonePass voxels("voxelization.reproject", scene, {{"resolution", 32}});
+    voxels.in("gbuffer", gbuffer);
+    if (byImage)
+      voxels.in("direct", LonePass("direct_lighting.shade", scene)
+                              .in("gbuffer", gbuffer)
+                              .in("shadow", shadow)
+                              .out<Image>("radiance"));
+    return LonePass("imperfect_volumes.inject", scene)
+        .in("fragments", voxels.out<VoxelFragments>("fragments"))
+        .in("shadow", shadow)
+        .out<ShGrid>("reflected")
+        .levels[0]
+        .coefficients[1]
+        ->downloadFloats(0);
   };
   const std::vector<float> lit = reflected(false), known = reflected(true);
   REQUIRE(lit.size() == known.size());
@@ -187,7 +176,7 @@ TEST_CASE("a dark voxel keeps its light beside one that is a million times brigh
   for (const char* precision : {"float", "half"}) {
     const ShGrid light =
         injected(scene, {squareAt({0.4, 0.001, 1.01}, {0, 1, 0}), squareAt({1.6, 0.001, 1.01}, {0, 1, 0})},
-                 {{"precision", 0, precision}}, low);
+                 {{"precision", precision}}, low);
     INFO(precision << ", unit " << light.unit);
     CHECK((std::string(precision) == "half") == (light.unit != 1.0f));
     const double dark = sent(light, {0, 0, 2}, {0, 1, 0}), bright = sent(light, {3, 0, 2}, {0, 1, 0});
@@ -205,8 +194,8 @@ TEST_CASE(
   const double most = 2.0 * 10.0 / (0.25 * 0.25) / kPi;
   const glm::vec3 low = -glm::vec3(snapshotOf(builder.scene, 0.0).origin);
   for (const char* precision : {"float", "half"}) {
-    const ShGrid light = injected(builder.scene, {squareAt({1.25, 1.25, 1.25}, {0, 0, 1})},
-                                  {{"precision", 0, precision}}, low);
+    const ShGrid light =
+        injected(builder.scene, {squareAt({1.25, 1.25, 1.25}, {0, 0, 1})}, {{"precision", precision}}, low);
     CAPTURE(precision);
     for (const double side : {-1.0, 1.0})
       CHECK(sent(light, {2, 2, 2}, {0, 0, side}) == Approx(most).epsilon(0.002));

@@ -21,20 +21,7 @@ constexpr float kGuard = 0.8660255f;
 /// Where voxels send their own place on both sides: in red, green and blue one more than x, y and z, or than
 /// what is left of them by `modulus`.
 ShGrid places(const glm::ivec3& size, int modulus = 1 << 20) {
-  ShGrid result;
-  result.quantity = ShGrid::Quantity::radiance;
-  ShGrid::Level level{{glm::vec3(0.0f), 1.0f, size}, {}};
-  const Volume volume(size);
-  for (int c = 0; c < 3; ++c) {
-    std::vector<float> values;
-    volume.forEach([&](const glm::ivec3& voxel) {
-      values.push_back(constant(voxel[c] % modulus + 1.0).x);
-      values.insert(values.end(), 3, 0.0f);
-    });
-    level.coefficients[static_cast<std::size_t>(c)] = volumeTexture(size, gpu::Format::rgba32f, values);
-  }
-  result.levels.push_back(level);
-  return result;
+  return evenLight(Volume(size), [=](const glm::ivec3& voxel, int c) { return voxel[c] % modulus + 1.0; });
 }
 
 /// The two opposite rays of a voxel: its direction, and what each of them found; 0 where it met nothing.
@@ -50,14 +37,14 @@ struct Pair {
 /// nothing.
 class Pairs {
  public:
-  Pairs(const Volume& volume, const std::vector<Setting>& settings, std::uint64_t seed = 1)
+  Pairs(const Volume& volume, const Settings& settings, std::uint64_t seed = 1)
       : size_(volume.size()), found_(marched(volume, settings, seed, 1 << 20)) {
     Volume full(size_);
     full.occupyWhere([](const glm::ivec3&) { return true; },
                      [](const glm::ivec3&) { return glm::dvec3(0, 0, 1); }, 0.0);
-    std::vector<Setting> ofWays;
+    Settings ofWays;
     for (const Setting& one : settings)
-      if (std::string(one.name) == "directions") ofWays.push_back(one);
+      if (one.name() == "directions") ofWays.push_back(one);
     whereAll_ = marched(full, ofWays, seed, 4);
   }
 
@@ -86,12 +73,12 @@ class Pairs {
   glm::ivec3 size_;
   std::array<std::vector<float>, 3> found_, whereAll_;
 
-  static std::array<std::vector<float>, 3> marched(const Volume& volume, std::vector<Setting> settings,
+  static std::array<std::vector<float>, 3> marched(const Volume& volume, Settings settings,
                                                    std::uint64_t seed, int modulus) {
     settings.push_back({"rays", 2});
-    Runner march = marching(volume, settings);
+    LonePass march = marching(volume, settings);
     march.in("reflected", places(volume.size(), modulus));
-    const ShGrid light = march.run<ShGrid>("incoming", seed);
+    const ShGrid light = march.run(seed).out<ShGrid>("incoming");
     std::array<std::vector<float>, 3> result;
     for (std::size_t c = 0; c < 3; ++c) result[c] = light.levels[0].coefficients[c]->downloadFloats(0);
     return result;
@@ -192,7 +179,7 @@ TEST_CASE("every ray of 'walk exact' finds the voxel of the walk on the host") {
     for (const double share : {0.005, 0.1}) {
       const Volume volume = scattered(size, share, 3);
       const Compared all = compared(
-          volume, Pairs(volume, {{"walk", 0, "exact"}}), [&](const glm::ivec3& voxel, const glm::dvec3& way) {
+          volume, Pairs(volume, {{"walk", "exact"}}), [&](const glm::ivec3& voxel, const glm::dvec3& way) {
             const glm::vec3 direction(way);
             const auto hit =
                 firstVoxel(volume.set(), glm::vec3(voxel) + 0.5f + kGuard * direction, direction);
@@ -211,7 +198,7 @@ TEST_CASE("every ray of 'walk steps' finds what stands at its first occupied ste
   const Volume volume = scattered(size, 0.02, 4);
   for (const double step : {1.0, 0.3, 2.5})
     for (const char* exit : {"early", "branchless"}) {
-      const Compared all = compared(volume, Pairs(volume, {{"step", step}, {"exit", 0, exit}}),
+      const Compared all = compared(volume, Pairs(volume, {{"step", step}, {"exit", exit}}),
                                     [&](const glm::ivec3& voxel, const glm::dvec3& way) {
                                       const auto place =
                                           firstStep(size, voxel, way, step, [&](const glm::dvec3& at) {
@@ -231,7 +218,7 @@ TEST_CASE(
   const glm::ivec3 size(16, 14, 15);
   const Volume volume = scattered(size, 0.15, 5);
   const Compared all = compared(
-      volume, Pairs(volume, {{"reading", 0, "linear"}}), [&](const glm::ivec3& voxel, const glm::dvec3& way) {
+      volume, Pairs(volume, {{"reading", "linear"}}), [&](const glm::ivec3& voxel, const glm::dvec3& way) {
         const auto place = firstStep(size, voxel, way, 1.0, [&](const glm::dvec3& at) {
           double share = 0.0;
           for (const auto& [one, weight] : occupiedAround(volume.set(), at)) share += weight;
@@ -255,7 +242,7 @@ TEST_CASE(
 TEST_CASE("rays go to all sides alike, from each voxel by a set of its own, or by one for all") {
   const Volume volume = scattered(glm::ivec3(24), 0.02, 6);
   const auto ways = [&](const char* directions, std::uint64_t seed) {
-    const Pairs pairs(volume, {{"directions", 0, directions}}, seed);
+    const Pairs pairs(volume, {{"directions", directions}}, seed);
     std::vector<glm::dvec3> result;
     forEachInside(volume, [&](const glm::ivec3& voxel) { result.push_back(pairs.of(voxel).direction); });
     return result;
@@ -292,10 +279,10 @@ TEST_CASE("rays are stratified: their noise falls faster than the root of their 
     double sum = 0.0, squares = 0.0;
     constexpr int kSeeds = 24;
     for (int seed = 1; seed <= kSeeds; ++seed) {
-      Runner march = marching(volume, {{"rays", rays}, {"voxels", 0, "own"}});
+      LonePass march = marching(volume, {{"rays", rays}, {"voxels", "own"}});
       march.in("reflected", places(volume.size())).in("gbuffer", seen({{{8.5f, 8.5f, 8.5f}, {0, 0, 1}}}));
       const double found =
-          coefficientsIn(march.run<ShGrid>("incoming", static_cast<std::uint64_t>(seed)), {8, 8, 8}).x;
+          coefficientsIn(march.run(static_cast<std::uint64_t>(seed)).out<ShGrid>("incoming"), {8, 8, 8}).x;
       sum += found / kSeeds;
       squares += found * found / kSeeds;
     }
@@ -317,16 +304,16 @@ TEST_CASE("openness counts what lies within its distance, by either walk") {
     OccupancyGrid opacity = volume.opacity();
     BinaryGrid bits = volume.bits();
     opacity.grid.voxelSize = bits.grid.voxelSize = static_cast<float>(metres);
-    Runner occlude("occlude", underSky(0.0));
+    LonePass occlude = volumePass("occlude", underSky(0.0));
     occlude.in("opacity", opacity)
         .in("bits", bits)
         .in("gbuffer", seen({{static_cast<float>(metres) * glm::vec3(32.5f, 32.5f, 5.5f), {0, 0, 1}}}))
         .with({{"rays", 20000},
                {"distance", metres * distance},
                {"step", 0.02},
-               {"walk", 0, walk},
-               {"voxels", 0, "own"}});
-    return 1.0 - coefficientsIn(occlude.run<ShGrid>("visibility"), {32, 32, 5}).x / (4.0 * kPi * kY0);
+               {"walk", walk},
+               {"voxels", "own"}});
+    return 1.0 - coefficientsIn(occlude.out<ShGrid>("visibility"), {32, 32, 5}).x / (4.0 * kPi * kY0);
   };
   for (const char* walk : {"steps", "exact"}) {
     INFO(walk);

@@ -98,9 +98,9 @@ TEST_CASE("a surface point reads the voxels of Eq. 5 that are free and open to i
             const ReadingOnHost reading(clutter.volume.set(), clutter.normals,
                                         {.six = six, .filtered = filtered, .free = free, .shift = shift});
             const std::vector<double> found = gathered(clutter.volume, light.grid, points,
-                                                       {{"voxels", 0, six ? "six" : "eight"},
-                                                        {"filter", 0, filtered ? "on" : "off"},
-                                                        {"blend", 0, free ? "free" : "all"},
+                                                       {{"voxels", six ? "six" : "eight"},
+                                                        {"filter", filtered ? "on" : "off"},
+                                                        {"blend", free ? "free" : "all"},
                                                         {"shift", shift}});
             int wrong = 0;
             for (std::size_t i = 0; i < points.size(); ++i)
@@ -123,13 +123,13 @@ TEST_CASE("triangles decide what is read, and shading normals what of it arrives
   for (ReadPoint& point : shaded) point.normal = someDirection(random);
   GBuffer both = seen(points);
   both.normal = seen(shaded).normal;
-  Runner gather("gather", underSky(0.0), static_cast<int>(points.size()));
+  LonePass gather = volumePass("gather", underSky(0.0), static_cast<int>(points.size()));
   gather.in("gbuffer", both)
       .in("incoming", light.grid)
       .in("visibility", light.grid)
       .in("opacity", clutter.volume.opacity())
       .in("attributes", clutter.volume.attributes());
-  const std::vector<float> found = gather.run<Image>("diffuse").texture->downloadFloats(0);
+  const std::vector<float> found = gather.floats("diffuse");
   const ReadingOnHost reading(clutter.volume.set(), clutter.normals, {});
   int wrong = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -157,13 +157,13 @@ TEST_CASE(
   for (const AttributeGrid& attributes : {cancelled, volume.attributes()})
     for (const double shift : {0.5, 3.0})
       for (const char* voxels : {"six", "eight"}) {
-        const std::vector<Setting> reads{{"shift", shift}, {"voxels", 0, voxels}};
-        Runner march = marching(volume, {{"rays", 64}, {"bounces", 2}});
+        const Settings reads{{"shift", shift}, {"voxels", voxels}};
+        LonePass march = marching(volume, {{"rays", 64}, {"bounces", 2}});
         march.with(reads).in("attributes", attributes).in("gbuffer", seen(points));
-        const std::vector<double> part = gathered(volume, march.run<ShGrid>("incoming"), points, reads);
-        march.with({{"cover", 0, "all"}});
+        const std::vector<double> part = gathered(volume, march.out<ShGrid>("incoming"), points, reads);
+        march.with({{"cover", "all"}});
         CAPTURE(shift, voxels);
-        CHECK(part == gathered(volume, march.run<ShGrid>("incoming"), points, reads));
+        CHECK(part == gathered(volume, march.out<ShGrid>("incoming"), points, reads));
       }
 }
 
@@ -174,9 +174,9 @@ TEST_CASE("a voxel that nothing tells which way it looks passes on what arrives 
   AttributeGrid attributes = volume.attributes();
   attributes.normal->clear(glm::vec4(0.0f));
   const auto arrivingWith = [&](double bounces) {
-    Runner march = marching(volume, {{"rays", 4000}, {"bounces", bounces}, {"walk", 0, "exact"}}, 2.0);
+    LonePass march = marching(volume, {{"rays", 4000}, {"bounces", bounces}, {"walk", "exact"}}, 2.0);
     march.in("attributes", attributes);
-    return coefficientsIn(march.run<ShGrid>("incoming"), {4, 4, 7}).x;
+    return coefficientsIn(march.out<ShGrid>("incoming"), {4, 4, 7}).x;
   };
   // Of the sky the voxel takes away as much as it sends, but for its albedo.
   const double hidden = constant(2.0).x - arrivingWith(1), sent = arrivingWith(2) - arrivingWith(1);
@@ -203,7 +203,7 @@ TEST_CASE("a voxel passes on what arrives on both of its sides, each into its ow
   const glm::ivec3 below(kSide / 2, kSide / 2, kSheet - 2), above(kSide / 2, kSide / 2, kSheet + 2);
   for (const char* feed : {"front", "own"}) {
     const auto second = [&](const glm::ivec3& voxel, double bounces) {
-      return coefficientsIn(arriving(volume, {{"rays", 64}, {"bounces", bounces}, {"feed", 0, feed}}), voxel);
+      return coefficientsIn(arriving(volume, {{"rays", 64}, {"bounces", bounces}, {"feed", feed}}), voxel);
     };
     // What the second bounce adds comes from the sheet alone: from all directions that meet it.
     const glm::dvec4 fromBelow = second(below, 2) - second(below, 1),
@@ -232,8 +232,7 @@ TEST_CASE(
         wall, [](const glm::ivec3&) { return glm::dvec3(0, 1, 0); }, 2.0, 2.0, albedo);
     return coefficientsIn(
                arriving(volume,
-                        {{"rays", 256}, {"bounces", bounces}, {"source", 0, "harmonics"}, {"feed", 0, feed}},
-                        sky),
+                        {{"rays", 256}, {"bounces", bounces}, {"source", "harmonics"}, {"feed", feed}}, sky),
                glm::ivec3(kSide / 2))
         .x;
   };
@@ -268,7 +267,7 @@ TEST_CASE(
   for (const char* feed : {"front", "own"}) {
     const auto light = [&](double bounces) {
       return arriving(clutter.volume,
-                      {{"rays", 1024}, {"walk", 0, "exact"}, {"bounces", bounces}, {"feed", 0, feed}}, 0.5)
+                      {{"rays", 1024}, {"walk", "exact"}, {"bounces", bounces}, {"feed", feed}}, 0.5)
           .levels[0]
           .coefficients[1]
           ->downloadFloats(0);
@@ -345,9 +344,9 @@ TEST_CASE(
   for (std::size_t i = 500; i < 600; ++i) values[i] = 0.4f;
   half.opacity->uploadFloats(0, values);
   const auto arrivingWith = [&](double occupied, double bounces) {
-    Runner march = marching(volume, {{"occupied", occupied}, {"bounces", bounces}, {"rays", 64}}, 0.5);
+    LonePass march = marching(volume, {{"occupied", occupied}, {"bounces", bounces}, {"rays", 64}}, 0.5);
     march.in("opacity", half);
-    return coefficientsIn(march.run<ShGrid>("incoming"), {4, 4, 2}).x;
+    return coefficientsIn(march.out<ShGrid>("incoming"), {4, 4, 2}).x;
   };
   CHECK(arrivingWith(0.5, 2) == Approx(double{constant(0.5).x}).epsilon(1e-5));
   CHECK(arrivingWith(0.3, 1) > 1.1 * constant(0.5).x);
@@ -355,14 +354,14 @@ TEST_CASE(
   // Between bounces nothing is read of its own voxel where that is occupied.
   const AnyLight light(volume, 7);
   const auto readWith = [&](double occupied, const OccupancyGrid& opacity) {
-    Runner gather("gather", underSky(0.0));
+    LonePass gather = volumePass("gather", underSky(0.0));
     gather.in("gbuffer", seen({{{4.3f, 4.6f, 5.4f}, {0, 0, 1}}}))
         .in("incoming", light.grid)
         .in("visibility", light.grid)
         .in("opacity", opacity)
         .in("attributes", volume.attributes())
         .with({{"occupied", occupied}});
-    return gather.run<Image>("diffuse").texture->downloadFloats(0).front();
+    return gather.floats("diffuse").front();
   };
   CHECK(readWith(0.3, half) == readWith(0.0, volume.opacity()));
   CHECK(readWith(0.5, half) == readWith(0.0, Volume(volume.size()).opacity()));
@@ -385,9 +384,9 @@ TEST_CASE("numbers of a volume count its unit, for rays and for surfaces") {
   ShGrid reflected = room.reflected();
   const auto sum = [&](double unit) {
     reflected.unit = static_cast<float>(unit);
-    Runner march = marching(room, {{"rays", 50}});
+    LonePass march = marching(room, {{"rays", 50}});
     march.in("reflected", reflected);
-    return march.run<ShGrid>("incoming");
+    return march.out<ShGrid>("incoming");
   };
   CHECK(coefficientsIn(sum(0.25), {3, 3, 3}).x == Approx(0.25 * coefficientsIn(sum(1.0), {3, 3, 3}).x));
   ShGrid light = sum(1.0);
@@ -401,27 +400,16 @@ TEST_CASE("numbers of a volume count its unit, for rays and for surfaces") {
 
 TEST_CASE("colours keep apart where they are read and where they are passed on") {
   const Volume empty({5, 5, 5});
-  ShGrid light;
-  light.quantity = ShGrid::Quantity::radiance;
-  ShGrid::Level level{empty.grid(), {}};
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::vector<float> values;
-    empty.forEach([&](const glm::ivec3&) {
-      values.push_back(constant(1.0 + static_cast<double>(c)).x);
-      values.insert(values.end(), 3, 0.0f);
-    });
-    level.coefficients[c] = volumeTexture(empty.size(), gpu::Format::rgba32f, values);
-  }
-  light.levels.push_back(level);
+  const ShGrid light = evenLight(empty, [](const glm::ivec3&, int c) { return 1.0 + c; });
   for (const auto& [voxels, blend] : {std::pair("six", "free"), std::pair("eight", "all")}) {
-    Runner gather("gather", underSky(0.0));
+    LonePass gather = volumePass("gather", underSky(0.0));
     gather.in("gbuffer", seen({{{2.2f, 2.4f, 2.7f}, {0, 0, 1}}}))
         .in("incoming", light)
         .in("visibility", light)
         .in("opacity", empty.opacity())
         .in("attributes", empty.attributes())
-        .with({{"voxels", 0, voxels}, {"blend", 0, blend}});
-    const std::vector<float> found = gather.run<Image>("diffuse").texture->downloadFloats(0);
+        .with({{"voxels", voxels}, {"blend", blend}});
+    const std::vector<float> found = gather.floats("diffuse");
     for (std::size_t c = 0; c < 3; ++c) CHECK(found[c] == Approx(1.0 + static_cast<double>(c)).epsilon(1e-5));
   }
   // Walls that reflect 0.8 of red, 0.4 of green and 0.2 of blue, between two bounces.
@@ -431,10 +419,10 @@ TEST_CASE("colours keep apart where they are read and where they are passed on")
   room.forEach([&](const glm::ivec3&) { albedo.insert(albedo.end(), {0.8f, 0.4f, 0.2f, 1.0f}); });
   attributes.albedo = volumeTexture(room.size(), gpu::Format::rgba16f, albedo);
   const auto total = [&](double bounces, std::size_t channel) {
-    Runner march = marching(room, {{"rays", 50}, {"bounces", bounces}});
+    LonePass march = marching(room, {{"rays", 50}, {"bounces", bounces}});
     march.in("attributes", attributes);
     const std::vector<float> values =
-        march.run<ShGrid>("incoming").levels[0].coefficients[channel]->downloadFloats(0);
+        march.out<ShGrid>("incoming").levels[0].coefficients[channel]->downloadFloats(0);
     return double{values[4 * room.at({3, 3, 3})]};
   };
   for (std::size_t c = 0; c < 3; ++c)

@@ -39,9 +39,8 @@ class Claim {
     PipelineExecutor executor(device(), techniques(), scene_, text, options);
     executor.keepOutput("average", "bits");
     const FrameResult frame = executor.render(0.0);
-    const auto* bits = dynamic_cast<const Out<BinaryGrid>*>(executor.output("average", "bits"));
-    REQUIRE(bits != nullptr);
-    return {recallOf(bits->value()), lightAgainst(reference_, frame.outputs.at("indirect_diffuse")),
+    return {recallOf(kept<BinaryGrid>(executor, "average", "bits")),
+            lightAgainst(reference_, frame.outputs.at("indirect_diffuse")),
             occlusionAgainst(reference_, frame.outputs.at("ambient_occlusion"))};
   }
 

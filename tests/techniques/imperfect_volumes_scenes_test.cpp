@@ -50,15 +50,15 @@ void checkAgainstQuadrature(int samples) {
     // No sky: rays that leave bring nothing.
     Scene dark = lit.scene;
     dark.environment = glm::vec3(0.0f);
-    Runner march("march", dark, static_cast<int>(points.size()));
+    LonePass march = volumePass("march", dark, static_cast<int>(points.size()));
     constexpr int kRays = 4096;
     march.in("opacity", lit.opacity)
         .in("reflected", lit.reflected)
         .in("attributes", lit.attributes)
         .in("bits", lit.bits)
         .in("gbuffer", seen(points))
-        .with({{"rays", kRays}, {"walk", 0, "exact"}, {"voxels", 0, "own"}});
-    const ShGrid found = march.run<ShGrid>("incoming");
+        .with({{"rays", kRays}, {"walk", "exact"}, {"voxels", "own"}});
+    const ShGrid found = march.out<ShGrid>("incoming");
     std::array<std::vector<float>, 3> values;
     for (std::size_t c = 0; c < 3; ++c) values[c] = found.levels[0].coefficients[c]->downloadFloats(0);
     int outside = 0, all = 0;
@@ -94,12 +94,12 @@ TEST_CASE("openness is by default that of a tenth of the scene's diagonal, as th
   const Lit lit("cornell", 16);
   const glm::dvec3 diagonal(lit.snapshot.bounds.high - lit.snapshot.bounds.low);
   const auto open = [&](double distance) {
-    PassHarness occlude(device(), techniques(), "imperfect_volumes", "occlude", lit.scene, lit.snapshot);
-    occlude.setInput("opacity", lit.opacity);
-    occlude.setParameter("rays", 64);
-    occlude.setParameter("distance", distance);
-    occlude.run();
-    return occlude.output<ShGrid>("visibility").levels[0].coefficients[0]->downloadFloats(0);
+    return LonePass("imperfect_volumes.occlude", lit.scene, {{"rays", 64}, {"distance", distance}})
+        .in("opacity", lit.opacity)
+        .out<ShGrid>("visibility")
+        .levels[0]
+        .coefficients[0]
+        ->downloadFloats(0);
   };
   const std::vector<float> byDefault = open(0.0);
   CHECK(byDefault == open(0.1 * glm::length(diagonal)));
@@ -111,11 +111,10 @@ TEST_CASE("a scene a thousand times as small has the same picture, where free vo
   for (const auto& [name, unit] : {std::pair("cornell", 1.0), {"stress/tiny", 1e-3}}) {
     Scene scene = committed(name);
     scene.cameras.front().target = unit * glm::dvec3(0.2739, 0.1431, 0.0);
-    const Pipeline text = pipeline("imperfect_volumes_visible");
-    RenderOptions options;
-    options.width = options.height = 48;
-    options.parameters = text.settings({"rays=25", "resolution=16"});
-    pictures.push_back(renderOnce(scene, text, options).outputs.at("indirect_diffuse").values());
+    pictures.push_back(
+        rendered(scene, pipeline("imperfect_volumes_visible"), {"rays=25", "resolution=16"}, sized(48, 48))
+            .outputs.at("indirect_diffuse")
+            .values());
   }
   double different = 0.0, all = 0.0;
   for (std::size_t i = 0; i < pictures[0].size(); ++i) {

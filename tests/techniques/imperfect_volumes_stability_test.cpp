@@ -81,13 +81,12 @@ Volume roomWithBoxes(int inside, double albedo) {
 }
 
 /// Sum of what arrives, in the first band.
-double arrived(const Volume& room, const std::vector<Setting>& settings, int bounces) {
-  std::vector<Setting> all{{"rays", 64}, {"bounces", static_cast<double>(bounces)}};
-  all.insert(all.end(), settings.begin(), settings.end());
-  Runner march = marching(room, all);
+double arrived(const Volume& room, const Settings& settings, int bounces) {
+  LonePass march = marching(room, {{"rays", 64}, {"bounces", bounces}});
+  march.with(settings);
   double sum = 0.0;
   const std::vector<float> values =
-      march.run<ShGrid>("incoming").levels[0].coefficients[0]->downloadFloats(0);
+      march.out<ShGrid>("incoming").levels[0].coefficients[0]->downloadFloats(0);
   room.forEach([&](const glm::ivec3& voxel) {
     if (!room.set().contains(voxel)) sum += values[4 * room.at(voxel)];
   });
@@ -95,7 +94,7 @@ double arrived(const Volume& room, const std::vector<Setting>& settings, int bou
 }
 
 /// By what the light of a bounce is larger than that of the one before, in the mean of those between two.
-double growth(const Volume& room, const std::vector<Setting>& settings, int from = 6, int to = 16) {
+double growth(const Volume& room, const Settings& settings, int from = 6, int to = 16) {
   const auto bounce = [&](int number) {
     return arrived(room, settings, number) - arrived(room, settings, number - 1);
   };
@@ -141,7 +140,7 @@ TEST_CASE("light in a closed room of albedo 0.999 does not grow over a thousand 
 
 TEST_CASE("with two bands of what is met light in a small white room grows, unless dark neighbours damp it") {
   // Two voxels off the walls, where all neighbours are free.
-  const std::vector<Setting> off{{"source", 0, "harmonics"}, {"shift", 2}};
+  const Settings off{{"source", "harmonics"}, {"shift", 2}};
   const double eight = growth(cube(8, 1.0), off), sixteen = growth(cube(16, 1.0), off);
   INFO("two voxels off, cubes of 8: " << eight << ", of 16: " << sixteen);
   CHECK(eight > 1.02);
@@ -149,7 +148,7 @@ TEST_CASE("with two bands of what is met light in a small white room grows, unle
   CHECK(sixteen > 1.004);
   CHECK(sixteen < eight);
   // With the printed weights the dark neighbours in the walls take more than that.
-  const double printed = growth(cube(8, 1.0), {{"source", 0, "harmonics"}, {"blend", 0, "all"}});
+  const double printed = growth(cube(8, 1.0), {{"source", "harmonics"}, {"blend", "all"}});
   INFO("occupied neighbours count: " << printed);
   CHECK(printed < 0.97);
   // The sides of surfaces do not grow there either.

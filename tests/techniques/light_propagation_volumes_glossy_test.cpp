@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "lumivox/measure/metrics.h"
-#include "lumivox/reference/path_tracer.h"
+#include "support/against_reference.h"
 #include "support/light_cells.h"
 
 using namespace lumivox;
@@ -45,21 +44,16 @@ AttributeGrid wallsWhere(IsWall isWall, const glm::vec3& normal, float coverage 
         for (int i = 0; i < 3; ++i) normals.push_back(wall ? normal[i] : 0.0f);
         normals.push_back(0.0f);
       }
-  surfaces.albedo = volume(kVoxels, gpu::Format::rgba16f);
-  surfaces.albedo->uploadFloats(0, albedo);
-  surfaces.normal = volume(kVoxels, gpu::Format::rgba16f);
-  surfaces.normal->uploadFloats(0, normals);
+  surfaces.albedo = textureOf(volumeOf(glm::ivec3(kVoxels), gpu::Format::rgba16f), albedo);
+  surfaces.normal = textureOf(volumeOf(glm::ivec3(kVoxels), gpu::Format::rgba16f), normals);
   return surfaces;
 }
 
 RadianceGrid reflected(const ShGrid& light, const AttributeGrid& surfaces) {
-  const SceneBuilder builder = emptyScene();
-  PassHarness reflect(device(), techniques(), "light_propagation_volumes", "reflect", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  reflect.setInput("surfaces", surfaces);
-  reflect.setInput("light", light);
-  reflect.run();
-  return reflect.output<RadianceGrid>("radiance");
+  return LonePass("light_propagation_volumes.reflect", emptyScene().scene)
+      .in("surfaces", surfaces)
+      .in("light", light)
+      .out<RadianceGrid>("radiance");
 }
 
 /// The radiance that a mirror of specular albedo 1 and this exponent at `position` shows the eye, for each of
@@ -72,22 +66,16 @@ double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec
   shiny.specular = glm::vec3(1.0f);
   shiny.exponent = exponent;
   builder.quad({-9, -9, -9}, {0.001f, 0, 0}, {0, 0.001f, 0}, builder.material(shiny));
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness filter(device(), techniques(), "voxel_cone_tracing", "filter", builder.scene, snapshot);
+  const glm::vec3 origin(snapshotOf(builder.scene, 0.0).origin);
   RadianceGrid placed = radiance;
-  placed.grid.low -= glm::vec3(snapshot.origin);
-  filter.setInput("radiance", placed);
-  filter.run();
-  PassHarness gather(device(), techniques(), "voxel_cone_tracing", "gather", builder.scene, snapshot);
-  gather.setParameter("glossy_cones", 1);
-  gather.setParameter("refinement", 1);
-  const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
-  gather.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)),
-                                     normals, normals, filledPixels(glm::vec4(0.0f)),
-                                     filledPixels(glm::vec4(1, 1, 1, exponent)), nullptr});
-  gather.setInput("grid", filter.output<RadianceGrid>("mips"));
-  gather.run();
-  return imageOf(*gather.output<Image>("glossy").texture).at(4, 4, 0);
+  placed.grid.low -= origin;
+  return LonePass("voxel_cone_tracing.gather", builder.scene, {{"glossy_cones", 1}, {"refinement", 1}})
+      .in("gbuffer", gbufferAt({position - origin, normal, glm::vec3(0.0f), {1, 1, 1, exponent}}))
+      .in("grid", LonePass("voxel_cone_tracing.filter", builder.scene)
+                      .in("radiance", placed)
+                      .out<RadianceGrid>("mips"))
+      .image("glossy")
+      .at(4, 4, 0);
 }
 
 }  // namespace
@@ -141,14 +129,10 @@ TEST_CASE("the finer of two grids lights the reflection grid more and more from 
 TEST_CASE("the reflection grid loses light and opacity over as many voxels before its border as it is told") {
   constexpr double kWidth = 5.0;
   constexpr float kCoverage = 0.1875f;
-  const SceneBuilder builder = emptyScene();
-  PassHarness reflect(device(), techniques(), "light_propagation_volumes", "reflect", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  reflect.setParameter("fade", kWidth);
-  reflect.setInput("surfaces", wallsWhere([](const glm::ivec3&) { return true; }, {0, 0, 1}, kCoverage));
-  reflect.setInput("light", evenLight([](double) { return 0.8; }));
-  reflect.run();
-  const std::vector<float> values = reflect.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
+  LonePass reflect("light_propagation_volumes.reflect", emptyScene().scene, {{"fade", kWidth}});
+  reflect.in("surfaces", wallsWhere([](const glm::ivec3&) { return true; }, {0, 0, 1}, kCoverage))
+      .in("light", evenLight([](double) { return 0.8; }));
+  const std::vector<float> values = reflect.out<RadianceGrid>("radiance").radiance->downloadFloats(0);
   double worst = 0.0;
   std::size_t i = 0;
   for (int z = 0; z < kVoxels; ++z)
@@ -160,9 +144,8 @@ TEST_CASE("the reflection grid loses light and opacity over as many voxels befor
       }
   CHECK(worst < 1e-4);
   // The same textures again: no light of the walls that are gone stays.
-  reflect.setInput("surfaces", wallsWhere([](const glm::ivec3& voxel) { return voxel.z == 7; }, {0, 0, 1}));
-  reflect.run();
-  const std::vector<float> after = reflect.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
+  reflect.in("surfaces", wallsWhere([](const glm::ivec3& voxel) { return voxel.z == 7; }, {0, 0, 1}));
+  const std::vector<float> after = reflect.out<RadianceGrid>("radiance").radiance->downloadFloats(0);
   constexpr std::size_t kSlice = 4 * kVoxels * kVoxels;
   for (std::size_t j = 0; j < after.size(); ++j)
     if (j / kSlice != 7 && after[j] != 0.0f) FAIL("light without a wall");
@@ -209,22 +192,15 @@ TEST_CASE("inside walls that all shine with L a lobe returns its integral times 
 }
 
 TEST_CASE("glossy light of the Cornell box is within its card's error of the reference") {
-  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell_glossy.scene");
-  ReferenceOptions referenceOptions = quietly(512, 1);
-  referenceOptions.width = referenceOptions.height = 64;
-  referenceOptions.useCache = true;
-  const ImageBuffer oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_glossy");
-  const Pipeline text = pipeline("light_propagation_volumes");
-  RenderOptions options;
-  options.width = options.height = 64;
-  const FrameResult frame = renderOnce(scene, text, options);
-  const ImageError error = compare(frame.outputs.at("indirect_glossy"), oneBounce),
-                   nothing = compare(ImageBuffer(64, 64, 3), oneBounce);
-  INFO("RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
-               << error.meanRatio.value);
-  // Measured: 0.382 of none, ratio 0.848, with a reference whose noise is a sixth of that error. Image and
-  // reference are the same bits every time; the margin of 5 % is for other drivers' rounding and texture
-  // filters.
-  CHECK(error.rmse.value < 0.40 * nothing.rmse.value);
-  CHECK(error.meanRatio.value == Approx(0.848).epsilon(0.05));
+  // Measured: 0.382 of none, ratio 0.848. Image and reference are the same bits every time; the margin of 5 %
+  // is for other drivers' rounding and texture filters.
+  const Scene scene = committed("cornell_glossy");
+  const Picture picture{64, 64, 512};
+  const Against found = against(
+      referenceOf(scene, picture),
+      pictured(scene, picture, pipeline("light_propagation_volumes"), {}).outputs.at("indirect_glossy"),
+      "one_bounce_glossy", 0.0f);
+  CAPTURE(found.rmse, found.ratio);
+  CHECK(found.rmse < 0.40);
+  CHECK(found.ratio == Approx(0.848).epsilon(0.05));
 }

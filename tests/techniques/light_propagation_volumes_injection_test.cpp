@@ -23,18 +23,12 @@ struct Injected : ShGrid::Level, OccludedFaces::Level {};
 
 /// An injection pass over cells of half a metre.
 struct Injection {
-  explicit Injection(const std::string& pass)
-      : builder(emptyScene()),
-        harness(device(), techniques(), "light_propagation_volumes", pass, builder.scene,
-                snapshotOf(builder.scene, 0.0)) {
-    harness.setParameter("levels", 1);
-    harness.setParameter("resolution", kSide);
-    harness.setParameter("extent", kSide * kSize);
-  }
+  explicit Injection(const std::string& name)
+      : pass("light_propagation_volumes." + name, emptyScene().scene,
+             {{"levels", 1}, {"resolution", kSide}, {"extent", kSide * kSize}}) {}
   Injected run(const std::vector<FragmentData>& squares) {
-    harness.setInput("fragments", listOver(grid(), squares));
-    harness.run();
-    return {harness.output<ShGrid>("light").levels[0], harness.output<OccludedFaces>("faces").levels[0]};
+    pass.in("fragments", listOver(grid(), squares));
+    return {pass.out<ShGrid>("light").levels[0], pass.out<OccludedFaces>("faces").levels[0]};
   }
   /// Where the cells lie: around the eye, on whole cells.
   static GridPlacement grid() {
@@ -42,8 +36,7 @@ struct Injection {
     return {kSize * (glm::round(eye / kSize) - 0.5f * static_cast<float>(kSide)), kSize, glm::ivec3(kSide)};
   }
 
-  SceneBuilder builder;
-  PassHarness harness;
+  LonePass pass;
 };
 
 /// A directional light of this irradiance without shadows.
@@ -53,13 +46,9 @@ ShadowMap sunFrom(const glm::vec3& towards, float irradiance) {
   light.firstView = -1;
   light.power = glm::vec3(irradiance);
   ShadowMap map;
-  map.lights = std::make_shared<gpu::Buffer>(device(), sizeof(light), "lights");
-  map.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
-  map.views = std::make_shared<gpu::Buffer>(device(), sizeof(glm::mat4), "views");
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d2Array;
-  description.format = gpu::Format::depth32f;
-  map.depth = std::make_shared<gpu::Texture>(device(), description, "shadow");
+  map.lights = bufferOf<LightSampleData>({light});
+  map.views = bufferOf<glm::mat4>({glm::mat4(0.0f)});
+  map.depth = filled({gpu::TextureKind::d2Array, gpu::Format::depth32f}, glm::vec4(0.0f));
   map.lightCount = map.layerCount = 1;
   return map;
 }
@@ -100,23 +89,17 @@ struct Texel {
 
 ReflectiveShadowMap mapOf(const std::vector<Texel>& texels) {
   ReflectiveShadowMap map;
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d2Array;
-  description.format = gpu::Format::rgba32f;
-  description.width = static_cast<int>(texels.size());
-  const auto filled = [&](auto value) {
+  const auto texture = [&](auto value) {
     std::vector<float> values;
     for (const Texel& texel : texels) {
       const glm::vec3 v = value(texel);
       values.insert(values.end(), {v.x, v.y, v.z, 1.0f});
     }
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "texels");
-    texture->uploadFloats(0, values);
-    return texture;
+    return textureOf(layers(static_cast<int>(texels.size()), 1, 1), values);
   };
-  map.position = filled([](const Texel& texel) { return Injection::grid().low + kSize * texel.place; });
-  map.normal = filled([](const Texel& texel) { return texel.normal; });
-  map.flux = filled([](const Texel& texel) { return texel.flux; });
+  map.position = texture([](const Texel& texel) { return Injection::grid().low + kSize * texel.place; });
+  map.normal = texture([](const Texel& texel) { return texel.normal; });
+  map.flux = texture([](const Texel& texel) { return texel.flux; });
   map.lightCount = map.layerCount = 1;
   return map;
 }
@@ -134,8 +117,7 @@ TEST_CASE("a texel of flux F alone in its brick lights the cell in front of it: 
         glm::ivec3 cell(position);
         cell[axis] = sign > 0.0f ? 3 : 2;
         const glm::vec3 flux(0.01f, 0.0025f, 0.03f), normal = unit(axis, sign);
-        inject.harness.setInput("map",
-                                mapOf({{position, normal, flux}, {position, normal, glm::vec3(0.0f)}}));
+        inject.pass.in("map", mapOf({{position, normal, flux}, {position, normal, glm::vec3(0.0f)}}));
         const Injected level = inject.run({});
         INFO("axis " << axis << ", sign " << sign << ", at " << place);
         for (int channel = 0; channel < 3; ++channel) {
@@ -259,7 +241,7 @@ TEST_CASE("what a floor has between a wall's plane and its true place shines in 
             wall[along] = place;
             if (right != 0.0f) squares.push_back(squareAt(wall, unit(side, right), glm::vec3(0.5f), 0.7f));
           }
-        inject.harness.setInput("shadow", sunFrom(unit(across, up), 0.8f));
+        inject.pass.in("shadow", sunFrom(unit(across, up), 0.8f));
         const Cells cells = inject.run(squares).coefficients[0]->downloadFloats(0);
         INFO("floor of axis " << across << ", wall " << right << " of axis " << side << " moved by "
                               << moved);
@@ -319,8 +301,8 @@ TEST_CASE(
         place[(axis + 2) % 3] = 5.25;
         glm::dvec3 beside = place;
         beside[(axis + 1) % 3] = 4.75;
-        inject.harness.setParameter("two_sided", std::string(twoSided ? "on" : "off"));
-        inject.harness.setInput("shadow", sunFrom(unit(axis, side), 0.8f));
+        inject.pass.with({{"two_sided", twoSided ? "on" : "off"}});
+        inject.pass.in("shadow", sunFrom(unit(axis, side), 0.8f));
         const Injected level =
             inject.run({squareAt(place, unit(axis, 1.0f), glm::vec3(0.75f, 0.5f, 1.25f)),
                         squareAt(beside, unit(axis, 1.0f), glm::vec3(0.25f, 0.5f, 1.5f), 0.5f)});
@@ -340,8 +322,8 @@ TEST_CASE(
 TEST_CASE(
     "with the published albedo a voxel shines as its most contrasting surface, of equal ones the reddest") {
   Injection inject("inject_voxels");
-  inject.harness.setParameter("albedo", std::string("contrast"));
-  inject.harness.setInput("shadow", sunFrom({0, 1, 0}, 0.8f));
+  inject.pass.with({{"albedo", "contrast"}});
+  inject.pass.in("shadow", sunFrom({0, 1, 0}, 0.8f));
   // Contrasts are kept in 127ths and albedos in bytes: 25.2 and 25.7 of the second pair are equal.
   struct Pair {
     glm::dvec3 wins, loses;
@@ -370,7 +352,7 @@ TEST_CASE("each surface of a long list lights its own cell and closes its own fa
         squareAt(glm::dvec3(i % kSide, i / kSide % kSide, i / kSide / kSide) + glm::dvec3(0.41, 0.1, 0.59),
                  {0, 1, 0}));
   Injection inject("inject_voxels");
-  inject.harness.setInput("shadow", sunFrom({0, 1, 0}, 0.8f));
+  inject.pass.in("shadow", sunFrom({0, 1, 0}, 0.8f));
   const Injected level = inject.run(squares);
   const Cells cells = level.coefficients[0]->downloadFloats(0);
   REQUIRE(cells.size() == 4 * squares.size());
@@ -397,7 +379,7 @@ TEST_CASE("a surface is lit by a light at its true place and not at the middle o
           light.firstView = -1;
           light.power = glm::vec3(0.3f);
           shadow.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
-          inject.harness.setInput("shadow", shadow);
+          inject.pass.in("shadow", shadow);
           const Cells cells =
               inject.run({squareAt(place, unit(axis, sign))}).coefficients[0]->downloadFloats(0);
           const glm::dvec3 path = static_cast<double>(kSize) * (lightCell - place);
@@ -413,12 +395,12 @@ TEST_CASE("a packed voxel keeps a normal in 255ths whatever its signs, and shine
   constexpr double kPrinted0 = 0.8862269262, kPrinted1 = 1.0233267079;
   const double intensity = std::floor(0.5 / kPi * 255.0) / 255.0 * 0.8 * kFace;
   Injection inject("inject_voxels");
-  inject.harness.setParameter("voxels", std::string("packed"));
+  inject.pass.with({{"voxels", "packed"}});
   for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0),
                                      glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1),
                                      glm::dvec3(1, 2, 3), glm::dvec3(-1, -2, -3), glm::dvec3(3, -1, -2)}) {
     const glm::dvec3 normal = glm::normalize(direction), kept = glm::trunc(normal * 255.0) / 255.0;
-    inject.harness.setInput("shadow", sunFrom(glm::vec3(normal), 0.8f));
+    inject.pass.in("shadow", sunFrom(glm::vec3(normal), 0.8f));
     const Cells cells =
         inject.run({squareAt({3.3, 4.2, 5.1}, glm::vec3(normal))}).coefficients[0]->downloadFloats(0);
     INFO("normal " << normal.x << " " << normal.y << " " << normal.z);
@@ -436,7 +418,7 @@ TEST_CASE(
     "a packed voxel keeps the contrast of its albedo as displayed, x^(1/2.2), in 127ths; above 1 is 1") {
   // |rrg - gbb| / (sqrt 2 + r + g + b).
   Injection inject("inject_voxels");
-  inject.harness.setParameter("voxels", std::string("packed"));
+  inject.pass.with({{"voxels", "packed"}});
   for (const glm::dvec3 albedo : {glm::dvec3(1, 0.1, 0.1), glm::dvec3(0.2, 0.6, 0.9), glm::dvec3(0, 0.5, 0),
                                   glm::dvec3(0.4), glm::dvec3(2, 0.1, 0.1)}) {
     const Injected level = inject.run({squareAt({3.3, 4.2, 5.1}, {0, 1, 0}, glm::vec3(albedo))});
@@ -465,7 +447,7 @@ TEST_CASE("a packed voxel keeps a normal at the nearest face of a tetrahedron, w
     squares.push_back(squareAt(cell + 0.4, glm::vec3(glm::normalize(normal))));
   }
   Injection inject("inject_voxels");
-  inject.harness.setParameter("voxels", std::string("packed"));
+  inject.pass.with({{"voxels", "packed"}});
   const std::vector<std::uint32_t> words = inject.run(squares).packed->downloadValues<std::uint32_t>();
   REQUIRE(words.size() == 5 * squares.size());
   for (std::size_t i = 0; i < squares.size(); ++i) {

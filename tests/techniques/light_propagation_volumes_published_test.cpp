@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "lumivox/base/error.h"
+#include "support/facts.h"
 #include "support/light_cells.h"
 
 using namespace lumivox;
@@ -66,37 +68,29 @@ Cells growing(int n, int axis) {
 
 /// Radiance that a white surface at a place reflects, through `gather` with these words set.
 double gathered(const LitCells& light, const glm::vec3& position, const glm::vec3& normal,
-                const std::vector<std::pair<const char*, const char*>>& settings) {
-  const SceneBuilder builder = emptyScene();
-  PassHarness gather(device(), techniques(), "light_propagation_volumes", "gather", builder.scene,
-                     snapshotOf(builder.scene, 0.0));
-  for (const auto& [name, word] : settings) gather.setParameter(name, std::string(word));
-  const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
-  gather.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
-                                     filledPixels(glm::vec4(1.0f)), nullptr, nullptr});
-  gather.setInput<ShGrid>("light", light);
-  gather.setInput("faces", light.faces);
-  gather.run();
-  return imageOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0);
+                const Settings& settings) {
+  return LonePass("light_propagation_volumes.gather", emptyScene().scene, settings)
+      .in("gbuffer", gbufferAt({position, normal}))
+      .in<ShGrid>("light", light)
+      .in("faces", light.faces)
+      .image("diffuse")
+      .at(4, 4, 0);
 }
 
 /// Radiance in one voxel of a reflection grid of [-1,1]^3 of white surfaces everywhere.
 std::vector<float> reflected(const ShGrid& light, int voxels) {
   AttributeGrid surfaces;
   surfaces.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(voxels), glm::ivec3(voxels)};
-  surfaces.albedo = volume(voxels, gpu::Format::rgba16f);
-  surfaces.albedo->clear(glm::vec4(1.0f));
-  surfaces.normal = volume(voxels, gpu::Format::rgba16f);
-  surfaces.normal->clear(glm::vec4(0, 1, 0, 0));
+  const gpu::TextureDescription volume = volumeOf(glm::ivec3(voxels), gpu::Format::rgba16f);
+  surfaces.albedo = filled(volume, glm::vec4(1.0f));
+  surfaces.normal = filled(volume, glm::vec4(0, 1, 0, 0));
   SceneBuilder builder = emptyScene();
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, 8, 8);
-  PassHarness reflect(device(), techniques(), "light_propagation_volumes", "reflect", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  reflect.setParameter("as_published", std::string("on"));
-  reflect.setInput("surfaces", surfaces);
-  reflect.setInput("light", light);
-  reflect.run();
-  return reflect.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
+  return LonePass("light_propagation_volumes.reflect", builder.scene, {{"as_published", "on"}})
+      .in("surfaces", surfaces)
+      .in("light", light)
+      .out<RadianceGrid>("radiance")
+      .radiance->downloadFloats(0);
 }
 
 }  // namespace
@@ -204,8 +198,7 @@ TEST_CASE("occlusion as printed is refused where the injection kept no normals")
   for (const char* word : {"occlusion", "as_published"}) {
     Propagation step(builder.scene);
     step.set(word, std::string(word) == "occlusion" ? "normals" : "on");
-    CHECK_THROWS_WITH(step.run(gridOf(4, empty(4))),
-                      Catch::Contains("level 0") && Catch::Contains("voxels packed"));
+    CHECK_THROWS_MATCHES(step.run(gridOf(4, empty(4))), Error, Tells("level 0", "voxels packed"));
   }
 }
 
@@ -241,19 +234,11 @@ TEST_CASE(
   builder.quad({-1, -1, -1}, {0, 0, 0.001f}, {0.001f, 0, 0}, builder.lambert(0.0f));  // height
   builder.light(LightKind::directional, glm::vec3(3.0f), {}, {0.3, -1, 0.2});
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
-  voxels.setParameter("resolution", 64);
-  voxels.run();
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", builder.scene, snapshot);
-  shadow.run();
-  PassHarness inject(device(), techniques(), "light_propagation_volumes", "inject_voxels", builder.scene,
-                     snapshot);
-  inject.setParameter("levels", 1);
-  inject.setParameter("as_published", std::string("on"));
-  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-  inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
-  inject.run();
-  const ShGrid::Level level = inject.output<ShGrid>("light").levels[0];
+  LonePass inject("light_propagation_volumes.inject_voxels", builder.scene,
+                  {{"levels", 1}, {"as_published", "on"}});
+  inject.in("fragments", fragmentsIn(builder.scene, {{"resolution", 64}}))
+      .in("shadow", shadowsOf(builder.scene));
+  const ShGrid::Level level = inject.out<ShGrid>("light").levels[0];
   const float h = level.grid.voxelSize;
   const float place = (-static_cast<float>(snapshot.origin.y) - level.grid.low.y) / h;
   REQUIRE(place - std::floor(place) < 0.5f);  // below the centre of its voxels: no shadow on that
@@ -261,7 +246,7 @@ TEST_CASE(
   const double radiance = std::floor(0.6 / kPi * 255.0) / 255.0 * 3.0 * cosine;
   const Cells cells = level.coefficients[0]->downloadFloats(0);
   const std::vector<std::uint32_t> words =
-      inject.output<OccludedFaces>("faces").levels[0].packed->downloadValues<std::uint32_t>();
+      inject.out<OccludedFaces>("faces").levels[0].packed->downloadValues<std::uint32_t>();
   REQUIRE(words.size() == cells.size() / 4 * 5);
   int lit = 0;
   for (std::size_t i = 0; i < cells.size(); i += 4) {
@@ -289,24 +274,15 @@ TEST_CASE("the most contrasting albedo wins by its values as displayed, not by l
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(pale));
   builder.quad({-1, 1, -1}, {0, 0, 0.001f}, {0.001f, 0, 0}, builder.lambert(0.0f));
   builder.light(LightKind::directional, glm::vec3(3.0f), {}, {0, -1, 0});
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
-  voxels.run();
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", builder.scene, snapshot);
-  shadow.run();
-  for (const char* kept : {"mean", "packed"}) {
-    PassHarness inject(device(), techniques(), "light_propagation_volumes", "inject_voxels", builder.scene,
-                       snapshot);
-    inject.setParameter("levels", 1);
-    inject.setParameter("albedo", std::string("contrast"));
-    inject.setParameter("voxels", std::string(kept));
-    inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-    inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
-    inject.run();
-    const ShGrid light = inject.output<ShGrid>("light");
+  for (const char* voxels : {"mean", "packed"}) {
+    const ShGrid light = LonePass("light_propagation_volumes.inject_voxels", builder.scene,
+                                  {{"levels", 1}, {"albedo", "contrast"}, {"voxels", voxels}})
+                             .in("fragments", fragmentsIn(builder.scene))
+                             .in("shadow", shadowsOf(builder.scene))
+                             .out<ShGrid>("light");
     const double red = energy(light.levels[0].coefficients[0]->downloadFloats(0)),
                  blue = energy(light.levels[0].coefficients[2]->downloadFloats(0));
-    INFO(kept);
+    INFO(voxels);
     REQUIRE(red > 0.0);
     CHECK(blue / red == Approx(0.2).margin(0.08));  // bytes of 0.1 / pi and 0.02 / pi: 8 and 1; not 0.75
   }
@@ -339,7 +315,7 @@ TEST_CASE(
   // Listing 4.35: dot(c, C(n)) / pi with c per face of a cell, no step away from the surface.
   constexpr int n = 8;
   const double h = 2.0 / n;
-  const std::vector<std::pair<const char*, const char*>> published{{"as_published", "on"}};
+  const Settings published{{"as_published", "on"}};
   const glm::vec3 position(0.13f, -0.21f, 0.34f);
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec3 place = (glm::dvec3(position) + 1.0) / h;

@@ -10,26 +10,16 @@ namespace {
 
 /// One grid of 32 cells before the propagation, from surface samples with this many voxels along a side.
 LitCells injected(const Scene& scene, const std::string& pass, int voxelResolution = 0) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
-  if (voxelResolution > 0) voxels.setParameter("resolution", voxelResolution);
-  voxels.run();
-  PassHarness map(device(), techniques(), "reflective_shadow_maps", "render", scene, snapshot);
-  map.setParameter("size", 512);
-  map.run();
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  shadow.run();
-  PassHarness inject(device(), techniques(), "light_propagation_volumes", pass, scene, snapshot);
-  inject.setParameter("levels", 1);
-  inject.setParameter("resolution", 32);
-  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+  LonePass inject("light_propagation_volumes." + pass, scene, {{"levels", 1}, {"resolution", 32}});
+  inject.in("fragments",
+            fragmentsIn(scene, voxelResolution > 0 ? Settings{{"resolution", voxelResolution}} : Settings{}));
   if (pass == "inject_rsm")
-    inject.setInput("map", map.output<ReflectiveShadowMap>("map"));
+    inject.in(
+        "map",
+        LonePass("reflective_shadow_maps.render", scene, {{"size", 512}}).out<ReflectiveShadowMap>("map"));
   else
-    inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
-  inject.run();
-  LitCells result{inject.output<ShGrid>("light"), inject.output<OccludedFaces>("faces")};
-  return result;
+    inject.in("shadow", shadowsOf(scene));
+  return {inject.out<ShGrid>("light"), inject.out<OccludedFaces>("faces")};
 }
 
 /// The red coefficients.
@@ -105,12 +95,8 @@ TEST_CASE("light in the middle of a closed room stays in it, wherever its walls 
     Cells cells(static_cast<std::size_t>(4 * size.x * size.y * size.z), 0.0f);
     cells[static_cast<std::size_t>(4 * ((middle.z * size.y + middle.y) * size.x + middle.x))] = 1.0f;
     for (const gpu::TextureRef& texture : level.coefficients) texture->uploadFloats(0, cells);
-    PassHarness propagate(device(), techniques(), "light_propagation_volumes", "propagate",
-                          room.builder.scene, snapshot);
-    propagate.setInput<ShGrid>("light", light);
-    propagate.setInput("faces", light.faces);
-    propagate.run();
-    const auto [inside, outside] = room.insideAndOutside(propagate.output<ShGrid>("light").levels[0]);
+    const auto [inside, outside] =
+        room.insideAndOutside(Propagation(room.builder.scene).run(light).grid("light").levels[0]);
     CHECK(inside > 1.0);
     CHECK(outside <= 1e-6 * inside);
   }
@@ -164,9 +150,8 @@ TEST_CASE(
   builder.look({0, 0.1, 0.9}, {0, 0.1, -1}, {0, 1, 0}, 0.002, kWidth, 1);
   for (const char* name : {"light_propagation_volumes", "light_propagation_volumes_voxels"}) {
     const Pipeline text = pipeline(name);
-    RenderOptions options;
-    options.parameters = text.settings({"levels=1", "resolution=24", "surfaces=48"});
-    const ImageBuffer row = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
+    const ImageBuffer row = rendered(builder.scene, text, {"levels=1", "resolution=24", "surfaces=48"})
+                                .outputs.at("indirect_diffuse");
     std::vector<float> values;
     for (int x = 0; x < kWidth; ++x) values.push_back(row.at(x, 0, 0));
     std::vector<float> sorted = values;

@@ -1,10 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 
+#include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/measure/metrics.h"
-#include "lumivox/reference/path_tracer.h"
+#include "support/against_reference.h"
+#include "support/facts.h"
 #include "support/light_cells.h"
 
 using namespace lumivox;
@@ -24,16 +26,6 @@ std::vector<float> randomFaces(int n, unsigned seed) {
   std::vector<float> faces(at(n + 1, 0, 0, n + 1));
   for (float& value : faces) value = static_cast<float>(random() % 5) / 4.0f;
   return faces;
-}
-
-ImageBuffer indirect(const Scene& scene, const char* name, const std::vector<std::string>& settings,
-                     int width, int height) {
-  const Pipeline text = pipeline(name);
-  RenderOptions options;
-  options.width = width;
-  options.height = height;
-  options.parameters = text.settings(settings);
-  return renderOnce(scene, text, options).outputs.at("indirect_diffuse");
 }
 
 /// Largest difference between the folded shader and the one that goes face by face, as a share of the norm.
@@ -259,23 +251,10 @@ TEST_CASE(
     CHECK(cells[i] * kY0 == Approx(1.5 * h * h * kRadiance).epsilon(0.01));
     CHECK(std::abs(cells[i + 1]) < 0.01 * cells[i]);
   }
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  const auto filled = [&](const glm::vec4& value) {
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-    texture->clear(value);
-    return texture;
-  };
-  const glm::vec4 normal(glm::normalize(glm::vec3(1, 2, -0.5f)), 1.0f);
-  PassHarness gather(device(), techniques(), "light_propagation_volumes", "gather", builder.scene,
-                     snapshotOf(builder.scene, 0.0));
-  gather.setInput("gbuffer", GBuffer{filled({0.1f, -0.2f, 0.3f, 1}), filled(normal), filled(normal),
-                                     filled(glm::vec4(1.0f)), nullptr, nullptr});
-  gather.setInput("light", light);
-  gather.setInput("faces", lit.faces);
-  gather.run();
-  CHECK(imageOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
+  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, -0.5f));
+  LonePass gather("light_propagation_volumes.gather", builder.scene);
+  gather.in("gbuffer", gbufferAt({{0.1f, -0.2f, 0.3f}, normal})).in("light", light).in("faces", lit.faces);
+  CHECK(gather.image("diffuse").at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
 }
 
 TEST_CASE("light without faces is refused, and told where faces come from") {
@@ -283,41 +262,29 @@ TEST_CASE("light without faces is refused, and told where faces come from") {
   Propagation step(builder.scene);
   LitCells light = gridOf(4, empty(4));
   light.faces.levels[0].occluded = nullptr;
-  CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("injection"));
+  CHECK_THROWS_MATCHES(step.run(light), Error, Tells("level 0", "injection"));
   light.faces.levels.clear();
-  CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("'faces'"));
+  CHECK_THROWS_MATCHES(step.run(light), Error, Tells("level 0", "faces"));
 }
 
 TEST_CASE("light other than the flux of all cells in W/sr is refused by name, at every pass that takes it") {
   const SceneBuilder builder = emptyScene();
   LitCells light = gridOf(4, empty(4));
-  std::string told;
-  SECTION("another quantity") {
-    light.quantity = ShGrid::Quantity::radiance;
-    told = "'light' contains radiance in W/(sr m^2); expected flux in W/sr";
-  }
-  SECTION("another unit") {
-    light.unit = 2.0f;
-    told = "'light' contains flux in units of 2 W/sr; expected units of 1 W/sr";
-  }
-  SECTION("values in some cells alone") {
-    light.readFor = "'cells six'";
-    told = "'light' holds only the voxels that are read with 'cells six', and here all voxels are read";
-  }
+  const auto [told, change] = GENERATE(table<Tells, void (*)(ShGrid&)>(
+      {{Tells("light", "radiance", "W/(sr m^2)", "flux", "W/sr"),
+        [](ShGrid& grid) { grid.quantity = ShGrid::Quantity::radiance; }},
+       {Tells("light", "flux", 2, 1), [](ShGrid& grid) { grid.unit = 2.0f; }},
+       {Tells("light", "cells six"), [](ShGrid& grid) { grid.readFor = "'cells six'"; }}}));
+  change(light);
   Propagation step(builder.scene);
-  CHECK_THROWS_WITH(step.run(light), Catch::Contains(told));
-  for (const char* pass : {"gather", "reflect"}) {
-    PassHarness harness(device(), techniques(), "light_propagation_volumes", pass, builder.scene,
-                        snapshotOf(builder.scene, 0.0));
-    const gpu::TextureRef pixels = filledPixels(glm::vec4(1.0f));
-    if (std::string(pass) == "gather")
-      harness.setInput("gbuffer", GBuffer{pixels, pixels, pixels, pixels, nullptr, nullptr});
-    else
-      harness.setInput("surfaces", AttributeGrid{light.levels[0].grid, volume(4, gpu::Format::rgba16f),
-                                                 volume(4, gpu::Format::rgba16f), nullptr});
-    harness.setInput<ShGrid>("light", light);
-    CHECK_THROWS_WITH(harness.run(), Catch::Contains(told));
-  }
+  CHECK_THROWS_MATCHES(step.run(light), Error, told);
+  LonePass gather("light_propagation_volumes.gather", builder.scene),
+      reflect("light_propagation_volumes.reflect", builder.scene);
+  gather.in("gbuffer", gbufferAt({}));
+  reflect.in("surfaces", AttributeGrid{light.levels[0].grid, volume(4, gpu::Format::rgba16f),
+                                       volume(4, gpu::Format::rgba16f), nullptr});
+  for (LonePass* pass : {&gather, &reflect})
+    CHECK_THROWS_MATCHES(pass->in<ShGrid>("light", light).run(), Error, told);
 }
 
 TEST_CASE("light without colour may be one volume alone, and propagates as three of the same") {
@@ -338,17 +305,10 @@ TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
   SceneBuilder builder = emptyScene(0.5f);
   builder.quad({-1, -1, -1}, {0.01f, 0, 0}, {0, 0.01f, 0}, builder.lambert(0.0f));
   builder.quad({1, 1, 1}, {0.01f, 0, 0}, {0, 0.01f, 0}, builder.lambert(0.0f));
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
-  voxels.run();
-  PassHarness inject(device(), techniques(), "light_propagation_volumes", "inject_rsm", builder.scene,
-                     snapshot);
-  inject.setParameter("levels", 3);
-  inject.setParameter("resolution", 8);
-  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-  inject.run();
+  LonePass inject("light_propagation_volumes.inject_rsm", builder.scene, {{"levels", 3}, {"resolution", 8}});
+  inject.in("fragments", fragmentsIn(builder.scene));
   Propagation step(builder.scene);
-  step.set("iterations", 400).run(inject.output<ShGrid>("light"), inject.output<OccludedFaces>("faces"));
+  step.set("iterations", 400).run(inject.out<ShGrid>("light"), inject.out<OccludedFaces>("faces"));
   const ShGrid light = step.grid("light");
   REQUIRE(light.levels.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -370,22 +330,17 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
   const std::string levels = "levels $levels";
   words.replace(words.find(levels), levels.size(), levels + "\n    extent " + std::to_string(32.0 * kCell));
   const Pipeline text = Pipeline::parse(words, sourceDirectory() / "scenes/pipelines/moved.pipeline");
-  const auto meanOf = [&](double cells) {
+  const auto lightMovedBy = [&](double cells) {
     SceneBuilder builder;
     builder.scene = litRoom(24, 24);
     // In the room: the grid lies around the eye.
     builder.look({0.5, 0.5, 0.95}, {0.5, 0.5, 0}, {0, 1, 0}, 1.2, 24, 24);
     const auto far = static_cast<float>(2.0 + 2.0 * cells * kCell);
     builder.quad(glm::vec3(far), {-0.001f, 0, 0}, {0, -0.001f, 0}, builder.lambert(0.0f));
-    RenderOptions options;
-    options.width = options.height = 24;
-    options.parameters = text.settings({"levels=1", "resolution=32", "iterations=48"});
-    const ImageBuffer image = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
-    double sum = 0.0;
-    for (const float value : image.values()) sum += value;
-    return sum / static_cast<double>(image.values().size());
+    return meanOf(rendered(builder.scene, text, {"levels=1", "resolution=32", "iterations=48"})
+                      .outputs.at("indirect_diffuse"));
   };
-  const double base = meanOf(0.0);
+  const double base = lightMovedBy(0.0);
   REQUIRE(base > 0.0);
   // As measured and told in the card: walls, boxes and area light are moved to the nearest planes of faces,
   // each by its own part of a cell, and jump to the next ones half-way; there all pieces of a wall together.
@@ -394,7 +349,7 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
   };
   for (const Shift& shift : {Shift{0.125, 1.03}, Shift{0.25, 1.08}, Shift{0.375, 1.11}, Shift{0.5, 1.18},
                              Shift{0.625, 0.83}, Shift{0.75, 0.90}, Shift{0.875, 0.95}}) {
-    const double there = meanOf(shift.cells);
+    const double there = lightMovedBy(shift.cells);
     INFO(shift.cells << " cells: " << there / base);
     CHECK(there != base);  // a grid that did not move would give the same bits
     CHECK(there / base == Approx(shift.light).margin(0.03));
@@ -402,87 +357,40 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
 }
 
 TEST_CASE("no negative radiance reaches an image, and what two bands made negative is told") {
-  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  const Scene scene = committed("cornell");
   const Pipeline text = pipeline("light_propagation_volumes");
-  RenderOptions options;
-  options.width = options.height = 32;
+  RenderOptions options = sized(32, 32);
   options.parameters = text.settings({"resolution=16"});
   options.health = true;
   PipelineExecutor executor(device(), techniques(), scene, text, options);
   executor.keepOutput("gather", "clipped");
   const FrameResult frame = executor.render(0.0);
   REQUIRE(frame.notes.size() == 1);
-  CHECK(frame.notes[0].find("% of the light of the image was negative") != std::string::npos);
+  CHECK_THAT(frame.notes[0], Tells("light", "negative"));
   CHECK(frame.healthFindings.empty());
-  double lowest = 0.0, sum = 0.0, clipped = 0.0;
-  for (const float value : frame.outputs.at("indirect_diffuse").values()) {
-    lowest = std::min<double>(lowest, value);
-    sum += value;
-  }
+  const std::vector<float>& light = frame.outputs.at("indirect_diffuse").values();
   const ImageBuffer negative = imageOf(*executor.output("gather", "clipped")->textures()[0]);
-  for (const float value : negative.values()) {
-    CHECK(value >= 0.0f);
-    clipped += value;
-  }
-  CHECK(lowest >= 0.0);
-  INFO("share: " << clipped / sum);
-  CHECK(clipped < 0.05 * sum);
-}
-
-TEST_CASE("without glossy materials there is no reflection grid, with them there is") {
-  for (const bool glossy : {false, true}) {
-    const Scene scene =
-        loadScene(sourceDirectory() / "scenes" / (glossy ? "cornell_glossy.scene" : "cornell.scene"));
-    const Pipeline text = pipeline("light_propagation_volumes");
-    RenderOptions options;
-    options.width = options.height = 16;
-    options.parameters = text.settings({"resolution=8", "iterations=8", "surfaces=16"});
-    PipelineExecutor executor(device(), techniques(), scene, text, options);
-    const FrameResult frame = executor.render(0.0);
-    bool reflects = false;
-    for (const PassRecord& pass : frame.passes) reflects = reflects || pass.name == "reflect";
-    CHECK(reflects == glossy);
-    double sum = 0.0;
-    for (const float value : frame.outputs.at("indirect_glossy").values()) sum += value;
-    CHECK((sum > 0.0) == glossy);
-  }
+  CHECK(*std::min_element(light.begin(), light.end()) >= 0.0f);
+  CHECK(*std::min_element(negative.values().begin(), negative.values().end()) >= 0.0f);
+  CHECK(sumOf(negative.values()) < 0.05 * sumOf(light));
 }
 
 TEST_CASE(
     "light propagation volumes on the Cornell box and the arcade are as near to the reference as their card says") {
   // Of the RMSE of leaving the light out, measured at this size: 0.426 and 0.421; 0.670 and 0.780. Image
   // and reference are the same bits every time; the margin of 5 % is for other drivers' rounding and filters.
-  struct Limit {
-    const char *scene, *text;
-    double error;
-  };
-  for (const Limit& limit : {Limit{"cornell", "light_propagation_volumes", 0.447},
-                             Limit{"cornell", "light_propagation_volumes_voxels", 0.442},
-                             Limit{"arcade", "light_propagation_volumes", 0.704},
-                             Limit{"arcade", "light_propagation_volumes_voxels", 0.819}}) {
-    const std::string name = limit.scene;
-    const char* text = limit.text;
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (name + ".scene"));
-    ReferenceOptions referenceOptions = quietly(64, 1);
-    referenceOptions.width = 64;
-    referenceOptions.height = 36;
-    referenceOptions.useCache = true;
-    const ImageBuffer oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_diffuse");
-    const ImageError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
-                     nothing = compare(ImageBuffer(64, 36, 3), oneBounce);
-    INFO(name << " through " << text << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value
-              << ", ratio " << error.meanRatio.value);
-    CHECK(error.rmse.value < limit.error * nothing.rmse.value);
-    CHECK(error.meanRatio.value >= 0.95);
-    CHECK(error.meanRatio.value <= (name == "cornell" ? 1.15 : 1.3));
-  }
-}
-
-TEST_CASE("the same seed and device give the same bits twice through light propagation volumes") {
-  const Scene scene = litRoom(24, 24);
-  for (const char* name : {"light_propagation_volumes", "light_propagation_volumes_voxels"}) {
-    const std::vector<std::string> settings{"resolution=16", "iterations=16"};
-    CHECK(indirect(scene, name, settings, 24, 24).values() ==
-          indirect(scene, name, settings, 24, 24).values());
-  }
+  const auto [name, text, error] = GENERATE(
+      table<const char*, const char*, double>({{"cornell", "light_propagation_volumes", 0.447},
+                                               {"cornell", "light_propagation_volumes_voxels", 0.442},
+                                               {"arcade", "light_propagation_volumes", 0.704},
+                                               {"arcade", "light_propagation_volumes_voxels", 0.819}}));
+  const Scene scene = committed(name);
+  const Picture picture{64, 36};
+  const Against found =
+      lightAgainst(referenceOf(scene, picture),
+                   pictured(scene, picture, pipeline(text), {}).outputs.at("indirect_diffuse"));
+  CAPTURE(name, text, found.rmse, found.ratio);
+  CHECK(found.rmse < error);
+  CHECK(found.ratio >= 0.95);
+  CHECK(found.ratio <= (name == std::string("cornell") ? 1.15 : 1.3));
 }

@@ -22,17 +22,14 @@ TEST_CASE(
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
   RadianceGrid grid;
   grid.grid = {snapshot.camera.eye - float(half), static_cast<float>(size), glm::ivec3(voxels)};
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = description.depth = voxels;
-  description.levels = gpu::fullLevelCount(voxels, voxels, voxels);
-  grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test grid");
+  const gpu::TextureDescription description =
+      volumeOf(glm::ivec3(voxels), gpu::Format::rgba32f, gpu::fullLevelCount(voxels, voxels, voxels));
+  grid.radiance = filled(description, glm::vec4(0.0f));
   for (int level = 0; level < description.levels; ++level)
     grid.radiance->clear(glm::vec4(glm::vec3(level + 1.0f), 1.0f), level);
   grid.unit = 3.0f;
-  PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene, snapshot);
-  trace.setInput("grid", grid);
+  LonePass trace("light_propagation_volumes.trace", builder.scene);
+  trace.in("grid", grid);
   struct Cone {
     float exponent;
     double reach, behind;  ///< m; from the eye to the surface
@@ -46,13 +43,11 @@ TEST_CASE(
       if (cone.behind > half && std::string(fade) == "none") continue;  // the cone begins outside of the grid
       const glm::vec3 position = snapshot.camera.eye - float(cone.behind) * glm::vec3(0, 0, 1),
                       normal(0.0f, std::sqrt(1.0f - cone.cosine * cone.cosine), cone.cosine);
-      const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
-      trace.setParameter("reach", cone.reach);
-      trace.setParameter("fade", std::string(fade));
-      trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
-                                        filledPixels(glm::vec4(1.0f)),
-                                        filledPixels(glm::vec4(0.2f, 0.1f, 0.05f, cone.exponent)), nullptr});
-      trace.run();
+      const ImageBuffer glossy =
+          trace.with({{"reach", cone.reach}, {"fade", fade}})
+              .in("gbuffer",
+                  gbufferAt({position, normal, glm::vec3(1.0f), {0.2f, 0.1f, 0.05f, cone.exponent}}))
+              .image("glossy");
       const double cosine = std::max(1.0 - 1.0 / (cone.exponent + 1.0), 0.5);
       const double ratio = 2.0 * std::tan(std::acos(cosine));
       double gathered = 0.0, opacity = 0.0, distance = 2.0 * size;
@@ -71,7 +66,6 @@ TEST_CASE(
       const double expected = 3.0 * gathered * atSurface * std::max(cone.cosine, 0.0f);
       INFO(fade << ", exponent " << cone.exponent << ", reach " << cone.reach << ", " << cone.behind
                 << " from the eye, cosine " << cone.cosine);
-      const ImageBuffer glossy = imageOf(*trace.output<Image>("glossy").texture);
       for (int channel = 0; channel < 3; ++channel)
         CHECK(glossy.at(4, 4, channel) == Approx(0.2 * std::exp2(-channel) * expected).epsilon(5e-3));
     }
@@ -89,30 +83,19 @@ TEST_CASE(
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
   RadianceGrid grid;
   grid.grid = {snapshot.camera.eye - 0.5f * size * voxels, size, glm::ivec3(voxels)};
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = description.depth = voxels;
-  description.levels = 2;
-  grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test wall");
-  for (int level = 0; level < description.levels; ++level) {
+  grid.radiance = filled(volumeOf(glm::ivec3(voxels), gpu::Format::rgba32f, 2), glm::vec4(0.0f));
+  for (int level = 0; level < 2; ++level) {
     const std::size_t side = voxels >> level, slice = side * side * 4;
     std::vector<float> values(side * slice, 0.0f);
     std::fill(values.begin() + (first >> level) * slice, values.begin() + (end >> level) * slice, opacity);
     grid.radiance->uploadFloats(level, values);
   }
-  PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene, snapshot);
-  trace.setInput("grid", grid);
-  trace.setParameter("fade", std::string("none"));
+  LonePass trace("light_propagation_volumes.trace", builder.scene);
+  trace.in("grid", grid);
   const glm::vec3 position = snapshot.camera.eye - glm::vec3(0, 0, (0.5f * voxels - seen) * size);
-  const gpu::TextureRef normals = filledPixels(glm::vec4(0, 0, 1, 1));
-  trace.setInput("gbuffer",
-                 GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
-                         filledPixels(glm::vec4(1.0f)), filledPixels(glm::vec4(1, 1, 1, 1e6f)), nullptr});
+  trace.in("gbuffer", gbufferAt({position, {0, 0, 1}, glm::vec3(1.0f), {1, 1, 1, 1e6f}}));
   const auto gathered = [&](int steps) {  // of a voxel each
-    trace.setParameter("reach", (steps + 0.5) * size);
-    trace.run();
-    return imageOf(*trace.output<Image>("glossy").texture).at(4, 4, 0);
+    return trace.with({{"fade", "none"}, {"reach", (steps + 0.5) * size}}).image("glossy").at(4, 4, 0);
   };
   // Between the middles of two voxels of level 1, two finest ones wide, lies a line between their values;
   // each sample stands for half of its diameter.
@@ -139,17 +122,17 @@ TEST_CASE("the printed cone leaves pixels black where nothing is seen, or nothin
   grid.grid = {snapshot.camera.eye - 1.0f, 0.25f, glm::ivec3(8)};
   grid.radiance = volume(8, gpu::Format::rgba32f);
   grid.radiance->clear(glm::vec4(1.0f));
-  PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene, snapshot);
-  trace.setInput("grid", grid);
+  LonePass trace("light_propagation_volumes.trace", builder.scene);
+  trace.in("grid", grid);
   for (const bool isSeen : {true, false})
     for (const float albedo : {0.3f, 0.0f}) {
       const glm::vec3 position = snapshot.camera.eye - glm::vec3(0, 0, 0.3f);
-      const gpu::TextureRef normals = filledPixels(glm::vec4(0, 0, 1, 1));
-      trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, isSeen ? 1.0f : 0.0f)), normals,
-                                        normals, filledPixels(glm::vec4(1.0f)),
-                                        filledPixels(glm::vec4(glm::vec3(albedo), 20.0f)), nullptr});
-      trace.run();
-      const float value = imageOf(*trace.output<Image>("glossy").texture).at(4, 4, 1);
+      const float value =
+          trace
+              .in("gbuffer",
+                  gbufferAt({position, {0, 0, 1}, glm::vec3(1.0f), {glm::vec3(albedo), 20.0f}, isSeen}))
+              .image("glossy")
+              .at(4, 4, 1);
       if (isSeen && albedo > 0.0f) CHECK(value > 0.01f);
       if (!isSeen || albedo == 0.0f) CHECK(value == 0.0f);
     }

@@ -24,19 +24,13 @@ Transported transported(const std::string& name, int resolution, int side, int m
                         int samples) {
   Transported result{Seen(name, resolution, side), {}, {}, {}, {}};
   const Seen& seen = result.seen;
-  PassHarness lights(device(), techniques(), "reflective_shadow_maps", "render", seen.scene, seen.snapshot);
-  lights.setParameter("size", 256 * mapScale);
-  lights.setParameter("area_size", 64 * mapScale);
-  lights.run();
-  const auto& map = lights.output<ReflectiveShadowMap>("map");
-  PassHarness gather(device(), techniques(), "near_field_voxels", "gather", seen.scene, seen.snapshot);
-  gather.setInput("gbuffer", seen.gbuffer);
-  gather.setInput("bits", seen.bits);
-  gather.setInput("map", map);
-  gather.setParameter("rays", rays);
-  gather.run();
-  result.arriving = gather.output<Image>("arriving").texture->downloadFloats(0);
-  result.open = gather.output<Image>("occlusion").texture->downloadFloats(0);
+  LonePass lights("reflective_shadow_maps.render", seen.scene,
+                  {{"size", 256 * mapScale}, {"area_size", 64 * mapScale}});
+  const auto& map = lights.out<ReflectiveShadowMap>("map");
+  LonePass gather("near_field_voxels.gather", seen.scene, {{"rays", rays}});
+  gather.in("gbuffer", seen.gbuffer).in("bits", seen.bits).in("map", map);
+  result.arriving = gather.floats("arriving");
+  result.open = gather.floats("occlusion");
   result.albedo = seen.gbuffer.diffuse->downloadFloats(0);
 
   const GridPlacement& grid = seen.bits.grid;

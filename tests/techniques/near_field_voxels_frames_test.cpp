@@ -2,6 +2,8 @@
 // and what it refuses.
 #include <array>
 
+#include "lumivox/base/error.h"
+#include "support/facts.h"
 #include "support/near_field.h"
 
 using namespace lumivox;
@@ -31,8 +33,8 @@ TEST_CASE("thousands of rays, in portions of another size for each method, find 
   std::vector<std::vector<float>> found;
   for (const char* method : {"hierarchy", "stacks", "plain"}) {
     Gatherer gatherer(gridOf(clutter()), underSky(1.0f));
-    gatherer.at(kPlace, kUp).with({{"rays", 3001}, {"occlusion_distance", 15}, {"method", 0, method}});
-    found.push_back(everyFourth(gatherer.run("occlusion")));
+    gatherer.at(kPlace, kUp).with({{"rays", 3001}, {"occlusion_distance", 15}, {"method", method}});
+    found.push_back(everyFourth(gatherer.floats("occlusion")));
   }
   CHECK(found[1] == found[0]);
   CHECK(found[2] == found[0]);
@@ -45,11 +47,9 @@ TEST_CASE("rays of many portions are those of one: twice as many halve into the 
   once.at(kPlace, kUp).with({{"rays", 96}, {"occlusion_distance", 15}});
   often.at(kPlace, kUp).with({{"rays", 24}, {"occlusion_distance", 15}});
   often.harness().accumulate();
-  for (int i = 0; i < 3; ++i) often.run();
-  const std::vector<float> light = once.run(), accumulated = often.run();
-  const std::vector<float> open = once.run("occlusion"),
-                           openOfFrames =
-                               often.harness().output<Image>("occlusion").texture->downloadFloats(0);
+  for (int i = 0; i < 4; ++i) often.run();
+  const std::vector<float> light = once.arriving(), accumulated = often.arriving(),
+                           open = once.floats("occlusion"), openOfFrames = often.floats("occlusion");
   for (std::size_t i = 0; i < light.size(); ++i) {
     CHECK(accumulated[i] == Approx(light[i]).epsilon(1e-5));
     CHECK(openOfFrames[i] == Approx(open[i]).epsilon(1e-5));
@@ -61,37 +61,32 @@ TEST_CASE("more lights than a dispatch can take add up") {
   ReflectiveShadowMap map =
       mapOf(lightOf("directional"), 4, glm::vec4(voxel.centre, 1), {0, -1, 0, 1}, fluxOf(0.25f));
   const std::vector<LightSampleData> lights(20000, map.lights->downloadValues<LightSampleData>().front());
-  map.lights = std::make_shared<gpu::Buffer>(device(), lights.size() * sizeof(LightSampleData), "lights");
-  map.lights->uploadValues(std::span<const LightSampleData>(lights));
+  map.lights = bufferOf(lights);
   map.lightCount = static_cast<int>(lights.size());
   Gatherer gatherer = voxel.gatherer(map);
   gatherer.with({{"rays", 3}, {"occlusion_distance", 100}});
-  CHECK(gatherer.run()[0] == Approx(5000.0).epsilon(1e-5));
-  CHECK(gatherer.harness().output<Image>("occlusion").texture->downloadFloats(0)[0] == 0.0f);
+  CHECK(gatherer.arriving()[0] == Approx(5000.0).epsilon(1e-5));
+  CHECK(gatherer.floats("occlusion")[0] == 0.0f);
 }
 
 TEST_CASE("half and quarter of the pixels send rays, also of an image of one") {
   for (const glm::ivec2 size : {glm::ivec2(13, 6), glm::ivec2(1, 1)})
     for (const auto& [word, every] : {std::pair("full", 1), std::pair("half", 2), std::pair("quarter", 4)}) {
       Gatherer gatherer(gridOf(VoxelSet({8, 8, 8})), underSky(3.0f), size.x, size.y);
-      gatherer.at({4, 4, 4}, kUp, size.x, size.y).with({{"pixels", 0, word}, {"rays", 4}});
-      gatherer.run();
-      const gpu::TextureRef arriving = gatherer.harness().output<Image>("arriving").texture;
+      gatherer.at({4, 4, 4}, kUp, size).with({{"pixels", word}, {"rays", 4}});
+      const gpu::TextureRef arriving = gatherer.out<Image>("arriving").texture;
       CHECK(arriving->description().width == (size.x + every - 1) / every);
       CHECK(arriving->description().height == (size.y + every - 1) / every);
       // What smooths them fills the image: albedo 0.5.
       SceneBuilder builder;
       builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, size.x, size.y);
-      PassHarness smooth(device(), techniques(), "image_filters", "smooth", builder.scene,
-                         snapshotOf(builder.scene, 0.0));
-      smooth.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, size.x, size.y));
-      smooth.setInput("diffuse", Image{arriving});
-      smooth.setInput("occlusion", gatherer.harness().output<Image>("occlusion"));
-      smooth.run();
-      const ImageBuffer diffuse = imageOf(*smooth.output<Image>("diffuse").texture);
+      LonePass smooth("image_filters.smooth", builder.scene);
+      smooth.in("gbuffer", gbufferAt({{4, 4, 4}, kUp, glm::vec3(0.5f)}, size))
+          .in("diffuse", Image{arriving})
+          .in("occlusion", gatherer.out<Image>("occlusion"));
+      const ImageBuffer diffuse = smooth.image("diffuse"), open = smooth.image("occlusion", 1);
       CHECK(diffuse.width() == size.x);
       for (const float value : diffuse.values()) CHECK(value == Approx(1.5).epsilon(1e-6));
-      const ImageBuffer open = imageOf(*smooth.output<Image>("occlusion").texture, 1);
       for (const float value : open.values()) CHECK(value == 1.0f);
     }
 }
@@ -100,8 +95,8 @@ TEST_CASE("rotations are of the pixel, of a tile of four by four, or none") {
   const BinaryGrid grid = gridOf(clutter());
   const auto open = [&](const char* rotation) {
     Gatherer gatherer(grid);
-    gatherer.at(kPlace, kUp).with({{"rays", 16}, {"occlusion_distance", 15}, {"rotation", 0, rotation}});
-    return everyFourth(gatherer.run("occlusion"));
+    gatherer.at(kPlace, kUp).with({{"rays", 16}, {"occlusion_distance", 15}, {"rotation", rotation}});
+    return everyFourth(gatherer.floats("occlusion"));
   };
   const std::vector<float> none = open("none"), tile = open("tile"), hash = open("hash");
   int other = 0, otherInTile = 0, otherOfHash = 0;
@@ -129,7 +124,7 @@ TEST_CASE("each sequence is distributed as the cosine, and narrows with the spre
       // Ten below, but for the half that the height of the offset takes.
       gatherer.at({32, 0.5f, 32}, kUp)
           .with({{"rays", 512},
-                 {"sequence", 0, sequence},
+                 {"sequence", sequence},
                  {"spread", spread},
                  {"offset", 0},
                  {"occlusion_distance", 1000}});
@@ -146,8 +141,8 @@ TEST_CASE("as published the estimator has one more 1 / pi, and the environment b
   const BinaryGrid grid = gridOf(set);
   const auto arriving = [&](const char* published) {
     Gatherer gatherer(grid, underSky(3.0f));
-    gatherer.at({8, 2, 8}, kUp).with({{"rays", 64}, {"radius", 1}, {"as_published", 0, published}});
-    return gatherer.run()[0];
+    gatherer.at({8, 2, 8}, kUp).with({{"rays", 64}, {"radius", 1}, {"as_published", published}});
+    return gatherer.arriving()[0];
   };
   CHECK(arriving("on") == Approx(3.0 / kPi));
   CHECK(arriving("off") == 0.0f);
@@ -161,14 +156,12 @@ TEST_CASE("light of voxels is that of the finest level, whatever their opacity")
   RadianceGrid radiance;
   radiance.grid = bits.grid;
   radiance.unit = 4.0f;
-  radiance.radiance = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::rgba32f, 16, 16, 16, 1},
-      "radiance");
-  radiance.radiance->clear({0.5f, 0.25f, 1.0f, 0.5f});  // pre-multiplied, in units
+  // Pre-multiplied, in units.
+  radiance.radiance = filled(volumeOf(glm::ivec3(16)), {0.5f, 0.25f, 1.0f, 0.5f});
   Gatherer gatherer(bits);
-  gatherer.harness().setInput("voxels", radiance);
-  gatherer.at({8.5f, 5, 8.5f}, kUp).with({{"rays", 1}, {"spread", 0}, {"radiance", 0, "voxels"}});
-  const std::vector<float> arriving = gatherer.run();
+  gatherer.in("voxels", radiance);
+  gatherer.at({8.5f, 5, 8.5f}, kUp).with({{"rays", 1}, {"spread", 0}, {"radiance", "voxels"}});
+  const std::vector<float> arriving = gatherer.arriving();
   CHECK(arriving[0] == Approx(4.0));
   CHECK(arriving[1] == Approx(2.0));
   CHECK(arriving[2] == Approx(8.0));
@@ -176,41 +169,23 @@ TEST_CASE("light of voxels is that of the finest level, whatever their opacity")
 
 TEST_CASE("what does not belong together is refused by name") {
   const BinaryGrid bits = gridOf(VoxelSet({16, 16, 16}));
-  const auto told = [&](const std::function<void(Gatherer&)>& change, const BinaryGrid& grid) {
+  const auto at = [&](const BinaryGrid& grid, const Settings& settings) {
     Gatherer gatherer(grid);
-    gatherer.at({8, 8, 8}, kUp);
-    change(gatherer);
-    return messageOf<Error>([&] { gatherer.run(); });
+    gatherer.at({8, 8, 8}, kUp).with(settings);
+    return gatherer;
   };
   RadianceGrid radiance;
   radiance.grid = {glm::vec3(0.5f), 2.0f, glm::ivec3(8)};
-  radiance.radiance = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::rgba32f, 8, 8, 8, 1}, "radiance");
-  CHECK_THAT(told(
-                 [&](Gatherer& one) {
-                   one.with({{"radiance", 0, "voxels"}}).harness().setInput("voxels", radiance);
-                 },
-                 bits),
-             Catch::Contains(
-                 "'bits' have 16 x 16 x 16 voxels of 1 m from (0, 0, 0) on, and 'voxels' 8 x 8 x 8 voxels "
-                 "of 2 m from (0.5, 0.5, 0.5) on; expected one grid for both"));
-  CHECK_THAT(told(
-                 [](Gatherer& one) {
-                   one.with({{"radiance", 0, "voxels"}});
-                 },
-                 bits),
-             Catch::Contains("'radiance voxels' reads 'voxels'; expected it to be connected"));
+  radiance.radiance = filled(volumeOf(glm::ivec3(8)), glm::vec4(0.0f));
+  const Settings fromVoxels{{"radiance", "voxels"}};
+  CHECK_THROWS_MATCHES(at(bits, fromVoxels).in("voxels", radiance).run(), Error,
+                       Tells("bits", 16, 16, 16, 1, "(0, 0, 0)", "voxels", 8, 8, 8, 2, "(0.5, 0.5, 0.5)"));
+  CHECK_THROWS_MATCHES(at(bits, fromVoxels).run(), Error, Tells("radiance voxels", "voxels", "connected"));
   ReflectiveShadowMap map = mapOf(lightOf("point"), 4, glm::vec4(0), glm::vec4(0), glm::vec4(0));
   map.lightCount = 3;
-  CHECK_THAT(
-      told([&](Gatherer& one) { one.map(map); }, bits),
-      Catch::Contains("'map' tells of 3 lights in 6 layers, and holds 1 lights, 6 views and 6 layers"));
-  CHECK_THAT(told(
-                 [](Gatherer& one) {
-                   one.with({{"method", 0, "printed"}});
-                 },
-                 gridOf(VoxelSet({4, 4, 130}))),
-             Catch::Contains("one texel of 128 bits along z, and the grid of 'bits' is 130 voxels deep"));
+  CHECK_THROWS_MATCHES(at(bits, {}).map(map).run(), Error, Tells("map", 3, 6, 1, 6, 6));
+  CHECK_THROWS_MATCHES(at(gridOf(VoxelSet({4, 4, 130})), {{"method", "printed"}}).run(), Error,
+                       Tells(128, "bits", 130));
 }
 
 TEST_CASE("parameters out of their range are refused, and taps that are neither one nor four") {
@@ -227,7 +202,7 @@ TEST_CASE("parameters out of their range are refused, and taps that are neither 
       PipelineExecutor(device(), techniques(), scene, text, {}).render(0.0);
     });
   };
-  CHECK_THAT(told("radius -1 m"), Catch::Contains("radius"));
-  CHECK_THAT(told("rays 2000000"), Catch::Contains("rays"));
-  CHECK_THAT(told("taps 3"), Catch::Contains("'taps' is 3; expected 1 or 4"));
+  CHECK_THAT(told("radius -1 m"), Tells("radius"));
+  CHECK_THAT(told("rays 2000000"), Tells("rays"));
+  CHECK_THAT(told("taps 3"), Tells("taps", 3, 1, 4));
 }

@@ -5,7 +5,6 @@
 #include <random>
 #include <set>
 
-#include "lumivox/pipeline/pass.h"
 #include "support/against_reference.h"
 #include "support/floor_patch.h"
 #include "support/kept_table.h"
@@ -19,22 +18,15 @@ namespace {
 
 /// Texels that all rays of the image read.
 double fetchesOf(const Seen& seen, const char* method) {
-  PassHarness gather(device(), techniques(), "near_field_voxels", "gather", seen.scene, seen.snapshot);
-  gather.setInput("gbuffer", seen.gbuffer);
-  gather.setInput("bits", seen.bits);
-  gather.setParameter("method", std::string(method));
-  gather.setParameter("rays", 16);
-  gather.setParameter("radius", 1e6);
-  gather.run();
-  const std::vector<float> read = gather.output<Image>("fetches").texture->downloadFloats(0);
+  const std::vector<float> read =
+      LonePass("near_field_voxels.gather", seen.scene, {{"method", method}, {"rays", 16}, {"radius", 1e6}})
+          .in("gbuffer", seen.gbuffer)
+          .in("bits", seen.bits)
+          .floats("fetches");
   double sum = 0.0;
   for (std::size_t i = 0; i < read.size(); i += 4) sum += read[i];
   return sum;
 }
-
-}  // namespace
-
-namespace {
 
 Against ofLight(const Scene& scene, const Picture& picture, const std::vector<std::string>& settings) {
   return lightAgainst(
@@ -140,23 +132,14 @@ TEST_CASE("the printed walk misses voxels and finds others, as its card says") {
       directions.push_back(0.0f);
     }
   const auto image = [&](const std::vector<float>& values) {
-    auto texture = std::make_shared<gpu::Texture>(
-        device(),
-        gpu::TextureDescription{.format = gpu::Format::rgba32f,
-                                .width = kWidth,
-                                .height = static_cast<int>(values.size()) / 4 / kWidth},
-        "rays");
-    texture->uploadFloats(0, values);
-    return Image{texture};
+    return Image{textureOf(pixels(kWidth, static_cast<int>(values.size()) / 4 / kWidth), values)};
   };
   const auto hits = [&](const char* method) {
-    PassHarness probe(device(), techniques(), "near_field_voxels", "probe", seen.scene, seen.snapshot);
-    probe.setInput("bits", seen.bits);
-    probe.setInput("origins", image(origins));
-    probe.setInput("directions", image(directions));
-    probe.setParameter("method", std::string(method));
-    probe.run();
-    return texels(probe.output<Image>("hits").texture);
+    return LonePass("near_field_voxels.probe", seen.scene, {{"method", method}})
+        .in("bits", seen.bits)
+        .in("origins", image(origins))
+        .in("directions", image(directions))
+        .floats("hits");
   };
   const std::vector<float> right = hits("hierarchy"), printed = hits("printed");
   int all = 0, missed = 0, other = 0, invented = 0;
@@ -194,9 +177,7 @@ Seen senderSeen(double degrees) {
   Seen seen("hidden_sender", 8, 64);
   turnCamera(seen.scene, degrees);
   seen.snapshot = snapshotOf(seen.scene, 0.0);
-  PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", seen.scene, seen.snapshot);
-  view.run();
-  seen.gbuffer = view.output<GBuffer>("gbuffer");
+  seen.gbuffer = gbufferOf(seen.scene);
   const std::vector<float> albedo = seen.gbuffer.diffuse->downloadFloats(0);
   for (std::size_t i = 0; i < albedo.size(); i += 4) REQUIRE(albedo[i] == albedo[i + 1]);
   return seen;
@@ -242,10 +223,8 @@ TEST_CASE("of a sender that the camera does not see nothing arrives in screen sp
   for (const double degrees : {0.0, 10.0})
     for (const char* radius : {"radius=0m", "radius=3m"}) {
       const Seen seen = senderSeen(degrees);
-      RenderOptions options;
-      options.parameters = text.settings({radius, "samples=256"});
       const Patch patch =
-          litFloor(seen, renderOnce(seen.scene, text, options).outputs.at("indirect_diffuse"));
+          litFloor(seen, rendered(seen.scene, text, {radius, "samples=256"}).outputs.at("indirect_diffuse"));
       CAPTURE(degrees, radius);
       REQUIRE(patch.pixels > 30);
       CHECK(patch.mean == 0.0);
@@ -267,9 +246,7 @@ TEST_CASE("samples of some pixels are those of the same pixels among all, for an
     PipelineExecutor executor(device(), techniques(), scene, changed, options);
     executor.keepOutput("gather", "arriving");
     executor.render(0.0);
-    const auto* output = dynamic_cast<const Out<Image>*>(executor.output("gather", "arriving"));
-    REQUIRE(output != nullptr);
-    return imageOf(*(*output)->texture);
+    return imageOf(*kept<Image>(executor, "gather", "arriving").texture);
   };
   for (const int rays : {16, 24, 64, 200}) {
     const ImageBuffer all = arriving("full", rays);
@@ -288,14 +265,8 @@ TEST_CASE("samples of some pixels are those of the same pixels among all, for an
 TEST_CASE(
     "light or occlusion that nobody wants is left out, with its maps, and the other is the same to the bit") {
   const Pipeline text = pipeline("near_field_voxels_occlusion");
-  RenderOptions options;
-  options.width = options.height = 32;
+  RenderOptions options = sized(32, 32);
   options.parameters = text.settings({"resolution=32", "rays=16"});
-  const auto passesOf = [](const FrameResult& frame) {
-    std::set<std::string> names;
-    for (const PassRecord& pass : frame.passes) names.insert(pass.name);
-    return names;
-  };
   for (const char* name : {"cornell", "arcade"}) {
     const Scene scene = committed(name);
     options.wanted = {};
@@ -320,13 +291,4 @@ TEST_CASE(
     CHECK(passes.contains("bounce") == (std::string(wanted) == "indirect_diffuse"));
     CHECK(passes.contains("occlusion") == (std::string(wanted) == "ambient_occlusion"));
   }
-  options.parameters = text.settings({"resolution=32", "rays=16"});
-  // Without lights there is no map, and what the sky brings is what a map without light leaves of it.
-  Scene unlit = committed("arcade");
-  unlit.lights.clear();
-  options.wanted = {"indirect_diffuse"};
-  const FrameResult left = renderOnce(unlit, text, options);
-  options.keepEverything = true;
-  const FrameResult kept = renderOnce(unlit, text, options);
-  CHECK(left.outputs.at("indirect_diffuse").values() == kept.outputs.at("indirect_diffuse").values());
 }

@@ -3,9 +3,8 @@
 #include <random>
 
 #include "lumivox/measure/voxel_walk.h"
-#include "lumivox/pipeline/pass.h"
 #include "support/bit_grids.h"
-#include "support/scene_builder.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -44,23 +43,11 @@ std::vector<Found> probed(const BinaryGrid& bits, const Rays& rays, const char* 
       directions[at] = c < 3 ? rays.directions[i][c] : 0.0f;
     }
   const auto image = [&](const std::vector<float>& values) {
-    auto texture = std::make_shared<gpu::Texture>(
-        device(), gpu::TextureDescription{.format = gpu::Format::rgba32f, .width = kWidth, .height = height},
-        "test rays");
-    texture->uploadFloats(0, values);
-    return Image{texture};
+    return Image{textureOf(pixels(kWidth, height), values)};
   };
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
-  PassHarness probe(device(), techniques(), "near_field_voxels", "probe", builder.scene,
-                    snapshotOf(builder.scene, 0.0));
-  probe.setParameter("method", std::string(method));
-  probe.setInput("bits", grid);
-  probe.setInput("origins", image(origins));
-  probe.setInput("directions", image(directions));
-  probe.run();
-  const std::vector<float> hits = probe.output<Image>("hits").texture->downloadFloats(0),
-                           fetches = probe.output<Image>("fetches").texture->downloadFloats(0);
+  LonePass probe("near_field_voxels.probe", SceneBuilder().scene, {{"method", method}});
+  probe.in("bits", grid).in("origins", image(origins)).in("directions", image(directions));
+  const std::vector<float> hits = probe.floats("hits"), fetches = probe.floats("fetches");
   std::vector<Found> result;
   for (std::size_t i = 0; i < rays.origins.size(); ++i)
     result.push_back(
@@ -143,10 +130,6 @@ Rays allKinds(const glm::ivec3& size, int count, unsigned seed) {
   }
   return rays;
 }
-
-}  // namespace
-
-namespace {
 
 struct Grid {
   glm::ivec3 size;

@@ -1,8 +1,10 @@
 // Texels of reflective shadow maps as lights.
 #include <cmath>
 
+#include "lumivox/base/error.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "support/facts.h"
 #include "support/reflective_shadow_maps.h"
 
 using namespace lumivox;
@@ -63,15 +65,14 @@ TEST_CASE(
   const auto at = [](const std::vector<float>& values, std::size_t texel, float times) {
     return times * glm::vec3(values[4 * texel], values[4 * texel + 1], values[4 * texel + 2]);
   };
-  const std::vector<TakenLight> all = lightsIn(choose(map, {{"method", std::string("stride")}}));
+  const std::vector<TakenLight> all = lightsIn(choose(map, {{"method", "stride"}}));
   REQUIRE(all.size() == 100 * count);
   for (std::size_t i = 0; i < all.size(); ++i)
     REQUIRE(all[i] == TakenLight{glm::vec4(at(positions, i, 1.0f), normals[4 * i + 3]),
                                  glm::vec4(at(normals, i, 1.0f), 0.0f),
                                  glm::vec4(at(fluxes, i, 1.0f), 0.0f)});
   // Squares of four texels, the last of a row and a column of two.
-  const std::vector<TakenLight> some =
-      lightsIn(choose(map, {{"method", std::string("stride")}, {"stride", 4.0}}));
+  const std::vector<TakenLight> some = lightsIn(choose(map, {{"method", "stride"}, {"stride", 4.0}}));
   REQUIRE(some.size() == 9 * count);
   const std::array<std::size_t, 3> middles{2, 6, 9}, sizes{4, 4, 2};
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -87,16 +88,12 @@ TEST_CASE("gathering every light of stride 1 is gathering all texels") {
   const Scene scene = litRoom(16, 16);
   // More lights than a loop may have.
   const ReflectiveShadowMap map = render(scene, 32).value;
-  const SurfaceLights lights = choose(map, {{"method", std::string("stride")}});
+  const SurfaceLights lights = choose(map, {{"method", "stride"}});
   REQUIRE(lights.count > kLoopLimit);
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot),
-      harness(device(), techniques(), "reflective_shadow_maps", "gather", scene, snapshot);
-  view.run();
-  harness.setInput("gbuffer", view.output<GBuffer>("gbuffer"));
-  harness.setInput("lights", lights);
-  harness.run();
-  const ImageBuffer sum = imageOf(*harness.output<Image>("diffuse").texture),
+  const ImageBuffer sum = LonePass("reflective_shadow_maps.gather", scene)
+                              .in("gbuffer", gbufferOf(scene))
+                              .in("lights", lights)
+                              .image("diffuse"),
                     all = gather(scene, map, "all", 1);
   CHECK(compare(sum, all).rmse.value < 1e-5 * compare(ImageBuffer(16, 16, 3), all).rmse.value);
 }
@@ -107,9 +104,8 @@ TEST_CASE("a light that faces the lamp has an area smaller than its surface's by
   builder.light(LightKind::directional, glm::vec3(3.0f), {}, {1, -1, 0});
   builder.light(LightKind::point, glm::vec3(3.0f), {0.2, 0.7, 0.1});
   const ReflectiveShadowMap map = render(builder.scene, 32).value;
-  const std::vector<TakenLight> surface = lightsIn(choose(map, {{"method", std::string("stride")}})),
-                                facing = lightsIn(choose(map, {{"method", std::string("stride")},
-                                                               {"area", std::string("facing")}}));
+  const std::vector<TakenLight> surface = lightsIn(choose(map, {{"method", "stride"}})),
+                                facing = lightsIn(choose(map, {{"method", "stride"}, {"area", "facing"}}));
   int lit = 0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     REQUIRE(facing[i].flux == surface[i].flux);
@@ -134,7 +130,7 @@ TEST_CASE("no light is chosen of a dark map, and a map without areas is refused"
   for (const TakenLight& light : dark) CHECK(light.flux == glm::vec4(0.0f));
   ReflectiveShadowMap map = mapOf({{{0, 1, 0, 1}, {0, -1, 0, 1}, {1, 1, 1, 0}}});
   map.normal = nullptr;
-  CHECK_THROWS_WITH(choose(map, {}), Catch::Contains("normals with areas"));
+  CHECK_THROWS_MATCHES(choose(map, {}), Error, Tells("normals", "areas"));
   // A map of no light, as of a scene without one.
   map.lightCount = 0;
   CHECK(choose(map, {}).count == 0);

@@ -3,13 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "lumivox/base/error.h"
 #include "lumivox/measure/metrics.h"
-#include "lumivox/pipeline/pass.h"
-#include "lumivox/reference/path_tracer.h"
 #include "lumivox/toolkit/light_samples.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/against_reference.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -70,14 +66,14 @@ TEST_CASE("a texel lights a surface on its axis as a disc of its area does") {
     const ReflectiveShadowMap map =
         mapOf({{{0, 1, 0, 1}, {0, -1, 0, static_cast<float>(area)}, {3, 3, 3, 0}}});
     for (const char* method : {"all", "flux"})
-      CHECK(reflectedAtOrigin(map, method, 1).x == Approx(3.0 / (kPi + area) / kPi).epsilon(1e-4));
+      CHECK(irradianceAt({}, map, method, 1).x == Approx(3.0 / (kPi + area)).epsilon(1e-4));
   }
 }
 
 TEST_CASE("a texel in the very point of a surface lights nothing there") {
   for (const float area : {0.0f, 0.5f})
     for (const char* method : {"all", "flux"})
-      CHECK(reflectedAtOrigin(mapOf({{{0, 0, 0, 1}, {0, -1, 0, area}, {3, 3, 3, 0}}}), method, 1) ==
+      CHECK(irradianceAt({}, mapOf({{{0, 0, 0, 1}, {0, -1, 0, area}, {3, 3, 3, 0}}}), method, 1) ==
             glm::vec3(0.0f));
 }
 
@@ -91,11 +87,11 @@ TEST_CASE("coloured texels are chosen by their luminance, Rec. 709, and carry th
       for (int i = 0; i < 2; ++i)
         texels[static_cast<std::size_t>(i)].flux[colours[i]] =
             static_cast<float>(luminances[i] / weights[colours[i]]);
-      const glm::vec3 found = reflectedAtOrigin(mapOf(texels), "flux", 1);
+      const glm::vec3 found = irradianceAt({}, mapOf(texels), "flux", 1);
       const int taken = firstIsMore ? 0 : 1;
       CAPTURE(colours[taken], firstIsMore);
       // A metre away the irradiance is the flux over pi.
-      CHECK(found[colours[taken]] * kPi * kPi == Approx(2.1 / weights[colours[taken]]).epsilon(1e-4));
+      CHECK(found[colours[taken]] * kPi == Approx(2.1 / weights[colours[taken]]).epsilon(1e-4));
       CHECK(found[colours[1 - taken]] == 0.0f);
     }
 }
@@ -140,11 +136,8 @@ TEST_CASE("the pattern lies where the light sees the surface point: texels elsew
                  width = texel * kSide;
     const std::vector<float> seen = map.position->downloadFloats(0);
     const gpu::TextureDescription description = map.flux->description();
-    map.position = std::make_shared<gpu::Texture>(device(), description, "places");
-    map.normal = std::make_shared<gpu::Texture>(device(), description, "normals");
-    map.flux = std::make_shared<gpu::Texture>(device(), description, "sizes");
-    map.position->clear(glm::vec4(point + glm::vec3(0, 1, 0), 1));
-    map.normal->clear({0, -1, 0, 0});
+    map.position = filled(description, glm::vec4(point + glm::vec3(0, 1, 0), 1));
+    map.normal = filled(description, {0, -1, 0, 0});
     for (const bool published : {false, true}) {
       const bool inView = published && kind == LightKind::spot;
       std::vector<float> sizes;
@@ -159,20 +152,15 @@ TEST_CASE("the pattern lies where the light sees the surface point: texels elsew
           size = 0.0;
         sizes.insert(sizes.end(), {float(size), float(size), float(size), 0.0f});
       }
-      map.flux->uploadFloats(0, sizes);
+      map.flux = textureOf(description, sizes);
       double expected = 2.0 * kPi * (1.0 - std::cos(kReach * kPi));
       if (kind == LightKind::directional) expected = kPi * std::pow(kReach * width, 2);
       if (inView) expected = kPi * std::pow(kReach * kSide, 2);
-      PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
-                          snapshotOf(builder.scene, 0.0));
-      harness.setInput("gbuffer", surfacePoints(point, {0, 1, 0}));
-      harness.setInput("map", map);
-      harness.setParameter("method", std::string("projected"));
-      harness.setParameter("weights", std::string(published ? "published" : "exact"));
-      harness.setParameter("reach", kReach);
-      harness.setParameter("samples", 1000);
-      harness.run();
-      const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+      const double found =
+          kPi * irradianceAt(point, map, "projected", 1000,
+                             {{"weights", published ? "published" : "exact"}, {"reach", kReach}},
+                             &builder.scene)
+                    .x;
       CAPTURE(static_cast<int>(kind), published, found / expected);
       CHECK(found == Approx(expected).epsilon(0.03));
     }
@@ -195,16 +183,9 @@ TEST_CASE(
     map.position->clear(glm::vec4(point + glm::vec3(0, 1, 0), 1));
     map.normal->clear({0, -1, 0, 0});
     map.flux->clear({1, 1, 1, 0});
-    PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
-                        snapshotOf(builder.scene, 0.0));
-    harness.setInput("gbuffer", surfacePoints(point, {0, 1, 0}));
-    harness.setInput("map", map);
-    harness.setParameter("method", std::string("projected"));
-    harness.setParameter("weights", std::string("published"));
-    harness.setParameter("reach", kReach);
-    harness.setParameter("samples", 100);
-    harness.run();
-    const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+    const double found = kPi * irradianceAt(point, map, "projected", 100,
+                                            {{"weights", "published"}, {"reach", kReach}}, &builder.scene)
+                                   .x;
     CAPTURE(ahead);
     CHECK(found == Approx(ahead > 0.0f ? kPi * std::pow(kReach * kSide, 2) : 0.0).epsilon(1e-3));
   }
@@ -235,22 +216,15 @@ TEST_CASE(
       Light& light = builder.light(*kind.kind, glm::vec3(1.0f), {0, 0.6, 0}, {0, -1, 0});
       if (kind.kind == LightKind::spot) light.innerAngle = light.outerAngle = 0.6f;
     }
-    PassHarness lights(device(), techniques(), "reflective_shadow_maps", "render", builder.scene,
-                       snapshotOf(builder.scene, 0.0));
-    lights.setParameter("size", kSide);
-    lights.setParameter("area_size", kSide);
-    lights.setParameter("area_samples", 1);
-    lights.run();
-    ReflectiveShadowMap map = lights.output<ReflectiveShadowMap>("map");
+    ReflectiveShadowMap map = LonePass("reflective_shadow_maps.render", builder.scene,
+                                       {{"size", kSide}, {"area_size", kSide}, {"area_samples", 1}})
+                                  .out<ReflectiveShadowMap>("map");
     REQUIRE(map.lightCount == 1);
     const double texel = map.lights->downloadValues<LightSampleData>().front().texelWidth;
     const double width = texel * kSide;  // of the view: m, or on the plane one metre away
     const gpu::TextureDescription description = map.flux->description();
-    map.position = std::make_shared<gpu::Texture>(device(), description, "places");
-    map.normal = std::make_shared<gpu::Texture>(device(), description, "normals");
-    map.flux = std::make_shared<gpu::Texture>(device(), description, "sizes");
-    map.position->clear({0, 1, 0, 1});
-    map.normal->clear({0, -1, 0, 0});
+    map.position = filled(description, {0, 1, 0, 1});
+    map.normal = filled(description, {0, -1, 0, 0});
     for (const bool published : {false, true}) {
       const bool inView = published && kind.kind == LightKind::spot;
       std::vector<float> sizes;
@@ -262,7 +236,7 @@ TEST_CASE(
                                      : texel * texel / std::pow(1.0 + u * u + v * v, 1.5);
         sizes.insert(sizes.end(), {float(size), float(size), float(size), 0.0f});
       }
-      map.flux->uploadFloats(0, sizes);
+      map.flux = textureOf(description, sizes);
       for (const float reach : {0.125f, 0.25f, 1.0f}) {
         const double side = inView ? kSide : width, tangent = 0.5 * width,
                      disc = kPi * std::pow(reach * side, 2);
@@ -276,16 +250,11 @@ TEST_CASE(
           if (reach == 0.25f) continue;
           if (reach == 1.0f) expected = 4.0 * std::asin(tangent * tangent / (1.0 + tangent * tangent));
         }
-        PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
-                            snapshotOf(builder.scene, 0.0));
-        harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
-        harness.setInput("map", map);
-        harness.setParameter("method", std::string("projected"));
-        harness.setParameter("weights", std::string(published ? "published" : "exact"));
-        harness.setParameter("reach", reach);
-        harness.setParameter("samples", 4000);
-        harness.run();
-        const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+        const double found =
+            kPi * irradianceAt({}, map, "projected", 4000,
+                               {{"weights", published ? "published" : "exact"}, {"reach", reach}},
+                               &builder.scene)
+                      .x;
         CAPTURE(kind.name, published, reach, found / expected);
         CHECK(found == Approx(expected).epsilon(0.02));
       }
@@ -297,18 +266,12 @@ TEST_CASE(
     "texels chosen by flux carry all of it, and the share of it that lies in any part of the map, however dim beside another light") {
   // Texels in the middle of the list face a surface a metre away and the others look aside, so that the
   // irradiance is what of the flux they carry, over pi. Two ends of the part: an error of a sample at either.
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
   constexpr int kSamples = 2000;
   for (const glm::ivec2 size : {glm::ivec2(1, 1), {5, 1}, {16, 1}, {33, 2}, {64, 6}, {256, 12}})
     for (const bool bright : {false, true}) {
       const int count = size.x * size.x * size.y, from = count * 3 / 10,
                 to = std::max(count * 8 / 10, from + 1);
-      gpu::TextureDescription description;
-      description.kind = gpu::TextureKind::d2Array;
-      description.format = gpu::Format::rgba32f;
-      description.width = description.height = size.x;
-      description.depth = size.y;
+      const gpu::TextureDescription description = layers(size.x, size.x, size.y);
       std::vector<float> fluxes, normals;
       double all = 0.0, facing = 0.0;
       for (int i = 0; i < count; ++i) {
@@ -322,22 +285,13 @@ TEST_CASE(
         normals.insert(normals.end(), {0.0f, inPart ? -1.0f : 1.0f, 0.0f, 0.0f});
       }
       ReflectiveShadowMap map;
-      for (gpu::TextureRef* texture : {&map.position, &map.normal, &map.flux})
-        *texture = std::make_shared<gpu::Texture>(device(), description, "test map");
-      map.position->clear({0, 1, 0, 1});
-      map.normal->uploadFloats(0, normals);
-      map.flux->uploadFloats(0, fluxes);
-      map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
-      map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
+      map.position = filled(description, {0, 1, 0, 1});
+      map.normal = textureOf(description, normals);
+      map.flux = textureOf(description, fluxes);
+      map.lights = map.views = bufferOf(std::vector<glm::mat4>(1));
       map.lightCount = 1;
       map.layerCount = size.y;
-      const auto found = [&](int samples) {
-        PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
-                            snapshotOf(builder.scene, 0.0));
-        harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
-        gatherBy(harness, map, "flux", samples);
-        return imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
-      };
+      const auto found = [&](int samples) { return kPi * irradianceAt({}, map, "flux", samples).x; };
       CAPTURE(size.x, size.y, bright, found(kSamples) / all, facing / all);
       CHECK(std::abs(found(kSamples) - facing) <= (2.0 / kSamples + 1e-5) * all);
       // One sample takes the texel in which half of all flux is reached, and stands for all of it.
@@ -361,42 +315,17 @@ TEST_CASE("gathering chosen texels converges to gathering all of them, by flux a
   }
 }
 
-TEST_CASE("the same seed and device give the same bits twice through reflective shadow maps") {
-  const Scene scene = litRoom(24, 24);
-  const FrameResult first = renderOnce(scene, pipeline("reflective_shadow_maps")),
-                    second = renderOnce(scene, pipeline("reflective_shadow_maps"));
-  CHECK(first.outputs.at("indirect_diffuse").values() == second.outputs.at("indirect_diffuse").values());
-}
-
 TEST_CASE("reflective shadow maps err on the Cornell box and the arcade by what their card claims") {
   // With 400 samples, here in fewer pixels than there: a tenth above its RMSE, as a share of that of no
   // indirect light, and a twentieth beside its energy are allowed.
-  struct Claim {
-    const char* scene;
-    double rmse, ratio;
-  };
-  for (const Claim& claim : {Claim{"cornell", 0.23, 0.95}, {"arcade", 0.53, 0.72}}) {
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
-    ReferenceOptions referenceOptions = quietly(64, 1);
-    referenceOptions.width = 64;
-    referenceOptions.height = 36;
-    referenceOptions.useCache = true;
-    const LayeredImage reference = cachedReference(scene, referenceOptions);
-    const ImageBuffer &oneBounce = reference.layers.at("one_bounce_diffuse"),
-                      &variance = reference.layers.at("one_bounce_diffuse.variance");
-    RenderOptions options;
-    options.width = 64;
-    options.height = 36;
-    const ImageBuffer image =
-        renderOnce(scene, pipeline("reflective_shadow_maps"), options).outputs.at("indirect_diffuse");
-    const ImageError error = compare(image, oneBounce, variance),
-                     nothing = compare(ImageBuffer(64, 36, 3), oneBounce, variance);
-    // The reference's own noise is a part of the RMSE.
-    const double rmse =
-        std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
-    CAPTURE(claim.scene, rmse / nothing.rmse.value, error.noiseFloor / nothing.rmse.value,
-            error.meanRatio.value);
-    CHECK(rmse < 1.1 * claim.rmse * nothing.rmse.value);
-    CHECK(error.meanRatio.value == Approx(claim.ratio).epsilon(0.05));
-  }
+  const auto [name, rmse, ratio] =
+      GENERATE(table<const char*, double, double>({{"cornell", 0.23, 0.95}, {"arcade", 0.53, 0.72}}));
+  const Scene scene = committed(name);
+  const Picture picture{64, 36};
+  const Against found = lightAgainst(
+      referenceOf(scene, picture),
+      pictured(scene, picture, pipeline("reflective_shadow_maps"), {}).outputs.at("indirect_diffuse"));
+  CAPTURE(name, found.rmse, found.ratio);
+  CHECK(found.rmse < 1.1 * rmse);
+  CHECK(found.ratio == Approx(ratio).epsilon(0.05));
 }

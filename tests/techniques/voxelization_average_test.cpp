@@ -1,14 +1,10 @@
 // Averages over the fragments of a voxel: closed forms, whatever the order of the list.
 #include <cmath>
-#include <cstring>
-#include <glm/gtc/packing.hpp>
 #include <random>
 
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/toolkit/light_samples.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
-#include "support/voxel_fragments.h"
+#include "support/made_fragments.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -20,16 +16,7 @@ constexpr int kSide = 8;
 /// A fragment at the centre of a voxel.
 FragmentData fragment(const glm::ivec3& cell, const glm::vec3& albedo, float coverage,
                       const glm::vec3& normal, std::uint32_t emission = 0) {
-  FragmentData result{};
-  result.voxel = static_cast<std::uint32_t>(cell.x | cell.y << 10 | cell.z << 20);
-  result.offset = 512u | 512u << 10 | 512u << 20;
-  // The octahedron is laid into a square, its lower half folded outwards.
-  const glm::vec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-  const glm::vec2 signs(n.x >= 0.0f ? 1.0f : -1.0f, n.y >= 0.0f ? 1.0f : -1.0f);
-  result.normal =
-      glm::packSnorm2x16(n.z >= 0.0f ? glm::vec2(n) : (1.0f - glm::abs(glm::vec2(n.y, n.x))) * signs);
-  result.albedoRg = glm::packHalf2x16(glm::vec2(albedo));
-  result.albedoBCoverage = glm::packHalf2x16(glm::vec2(albedo.z, coverage));
+  FragmentData result = squareAt((glm::dvec3(cell) + 0.5) / 2.0, normal, albedo, coverage);
   result.emission = emission;
   return result;
 }
@@ -45,15 +32,12 @@ VoxelFragments listOf(const std::vector<FragmentData>& fragments, VoxelFragments
                       std::uint32_t columns = 0, std::uint32_t rows = 1) {
   VoxelFragments list;
   list.grid = {glm::vec3(0.0f), 1.0f / kSide, glm::ivec3(kSide, kSide - 1, kSide - 2)};
-  list.capacity = fragments.size() + 3;
+  list.capacity = fragments.size();
   list.coverage = rule;
-  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
-  list.fragments->uploadValues(std::span<const FragmentData>(fragments));
+  list.fragments = bufferOf(fragments);
   const auto count = static_cast<std::uint32_t>(fragments.size());
-  const std::array<std::uint32_t, 4> words{count, columns > 0 ? columns : std::max(1u, (count + 63) / 64),
-                                           rows, 1};
-  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
-  list.count->uploadValues(std::span<const std::uint32_t>(words));
+  list.count =
+      bufferOf<std::uint32_t>({count, columns > 0 ? columns : std::max(1u, (count + 63) / 64), rows, 1});
   return list;
 }
 
@@ -67,6 +51,11 @@ struct Averages {
   std::vector<float> albedo, normal, emission, opacity;
   std::set<Cell> bits;
 
+  static Averages of(const AttributeGrid& attributes, const OccupancyGrid& opacity, const BinaryGrid& bits) {
+    return {attributes.albedo->downloadFloats(), attributes.normal->downloadFloats(),
+            attributes.emission ? attributes.emission->downloadFloats() : std::vector<float>{},
+            opacity.opacity->downloadFloats(), cellsOf(bits)};
+  }
   static std::size_t at(const glm::ivec3& cell) {
     return static_cast<std::size_t>((cell.z * (kSide - 1) + cell.y) * kSide + cell.x);
   }
@@ -80,17 +69,10 @@ struct Averages {
 Averages averagesOf(const Scene& scene, const std::vector<FragmentData>& fragments,
                     VoxelFragments::Coverage rule = VoxelFragments::Coverage::mean, std::uint32_t columns = 0,
                     std::uint32_t rows = 1) {
-  PassHarness harness(device(), techniques(), "voxelization", "average", scene, snapshotOf(scene, 0.0));
-  harness.setInput("fragments", listOf(fragments, rule, columns, rows));
-  harness.run();
-  const auto& grid = harness.output<AttributeGrid>("attributes");
-  Averages result;
-  result.albedo = grid.albedo->downloadFloats();
-  result.normal = grid.normal->downloadFloats();
-  if (grid.emission) result.emission = grid.emission->downloadFloats();
-  result.opacity = harness.output<OccupancyGrid>("opacity").opacity->downloadFloats();
-  result.bits = cellsOf(harness.output<BinaryGrid>("bits"));
-  return result;
+  LonePass pass("voxelization.average", scene);
+  pass.in("fragments", listOf(fragments, rule, columns, rows));
+  return Averages::of(pass.out<AttributeGrid>("attributes"), pass.out<OccupancyGrid>("opacity"),
+                      pass.out<BinaryGrid>("bits"));
 }
 
 const glm::vec3 kUp(0, 0, 1);
@@ -118,11 +100,11 @@ TEST_CASE(
   CHECK(averages.bits == std::set<Cell>{{3, 2, 5}});
 }
 
-TEST_CASE("the mean over more fragments of one voxel than 16 bits count is exact") {
+TEST_CASE("the mean over more fragments of one voxel than 16 bits count is exact, of equals to the bit") {
   const glm::ivec3 cell(2, 3, 4);
   std::vector<FragmentData> fragments;
   // 30 % dark and 70 % bright, facing two ways: the means are (0.3 * 0.125 + 0.7 * 0.75) = 0.5625 and halves.
-  constexpr int kCount = 70000;
+  constexpr int kCount = 100000;
   for (int i = 0; i < kCount; ++i) {
     const bool dark = i % 10 < 3, up = i % 2 == 0;
     fragments.push_back(fragment(cell, glm::vec3(dark ? 0.125f : 0.75f), 1.0f,
@@ -136,6 +118,10 @@ TEST_CASE("the mean over more fragments of one voxel than 16 bits count is exact
   CHECK(Averages::texel(averages.normal, cell).x == Approx(0.5).epsilon(1e-3));
   CHECK(Averages::texel(averages.normal, cell).z == Approx(0.5).epsilon(1e-3));
   CHECK(Averages::texel(averages.emission, cell).x == Approx(5.9).epsilon(1e-3));
+  // Values common to all fragments are rounded alike above and below the fraction.
+  fragments.assign(kCount, fragment(cell, glm::vec3(0.25f), 1.0f, kUp, sharedExponent(2.0f)));
+  CHECK(Averages::texel(averagesOf(sceneThatEmits(2.0f), fragments).emission, cell).x ==
+        Approx(2.0).epsilon(1e-6));
 }
 
 TEST_CASE("coverages of parts of a voxel add up, to one at most") {
@@ -215,19 +201,6 @@ TEST_CASE("averages do not depend on the order of the list, to the bit") {
   }
 }
 
-TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose their mean") {
-  std::vector<FragmentData> fragments(
-      100000, fragment({0, 0, 0}, {0.25f, 0.5f, 1.0f}, 1.0f, kUp, sharedExponent(2.0f)));
-  const Averages averages = averagesOf(sceneThatEmits(2.0f), fragments);
-  const glm::vec4 albedo = Averages::texel(averages.albedo, {0, 0, 0});
-  CHECK(albedo.x == Approx(0.25).epsilon(1e-3));
-  CHECK(albedo.z == Approx(1.0).epsilon(1e-3));
-  CHECK(albedo.w == Approx(1.0).epsilon(1e-3));
-  // Values common to all fragments are rounded alike above and below the fraction: the mean of equals is
-  // exact.
-  CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-6));
-}
-
 TEST_CASE("a dim crowded voxel keeps its emission in a grid with an area light 10^12 times as bright") {
   // Every voxel has a unit of its own: 5000 fragments of radiance 1 and half as many of 1/4 have the mean
   // 3/4.
@@ -272,11 +245,9 @@ TEST_CASE("a grid of several stacks along z has every voxel's bit in its own") {
   }
   VoxelFragments list = listOf(fragments, VoxelFragments::Coverage::mean);
   list.grid.resolution = {3, 2, 400};
-  const Scene scene = sceneThatEmits(0.0f);
-  PassHarness harness(device(), techniques(), "voxelization", "average", scene, snapshotOf(scene, 0.0));
-  harness.setInput("fragments", list);
-  harness.run();
-  CHECK(cellsOf(harness.output<BinaryGrid>("bits")) == expected);
+  CHECK(cellsOf(LonePass("voxelization.average", SceneBuilder().scene)
+                    .in("fragments", list)
+                    .out<BinaryGrid>("bits")) == expected);
 }
 
 TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no emission") {
@@ -290,41 +261,21 @@ TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no em
 TEST_CASE("the averages of a voxelized scene have its albedo and its voxels") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.25f, 3.0f), false);
-  const Pipeline text = Pipeline::parse(
-      "pipeline \"averages\" {\n  pass voxels voxelization.conservative { resolution 16 }\n"
-      "  pass mean voxelization.average { fragments voxels.fragments }\n}\n",
-      "made_by_a_test.pipeline");
-  std::vector<Averages> runs;
-  for (const bool keepEverything : {false, false, true}) {
-    RenderOptions options;
-    options.keepEverything = keepEverything;
-    PipelineExecutor executor(device(), techniques(), builder.scene, text, options);
-    for (const char* port : {"attributes", "opacity", "bits"}) executor.keepOutput("mean", port);
-    executor.render(0.0);
-    const auto& grid = static_cast<const Out<AttributeGrid>*>(executor.output("mean", "attributes"))->value();
-    Averages run;
-    run.albedo = grid.albedo->downloadFloats();
-    run.normal = grid.normal->downloadFloats();
-    run.emission = grid.emission->downloadFloats();
-    run.opacity = static_cast<const Out<OccupancyGrid>*>(executor.output("mean", "opacity"))
-                      ->value()
-                      .opacity->downloadFloats();
-    run.bits = cellsOf(static_cast<const Out<BinaryGrid>*>(executor.output("mean", "bits"))->value());
-    runs.push_back(run);
-  }
-  CHECK(runs[0] == runs[1]);
-  CHECK(runs[0] == runs[2]);
+  LonePass pass("voxelization.average", builder.scene);
+  pass.in("fragments", fragmentsIn(builder.scene, {{"resolution", 16}}));
+  const Averages averages = Averages::of(pass.out<AttributeGrid>("attributes"),
+                                         pass.out<OccupancyGrid>("opacity"), pass.out<BinaryGrid>("bits"));
   // One empty voxel around a box of 14 voxels a side: its shell.
-  CHECK(runs[0].bits.size() == 14u * 14u * 14u - 12u * 12u * 12u);
+  CHECK(averages.bits.size() == 14u * 14u * 14u - 12u * 12u * 12u);
   std::size_t occupied = 0;
-  for (std::size_t i = 0; i < runs[0].opacity.size(); ++i) {
-    if (runs[0].opacity[i] == 0.0f) continue;
+  for (std::size_t i = 0; i < averages.opacity.size(); ++i) {
+    if (averages.opacity[i] == 0.0f) continue;
     ++occupied;
-    CHECK(runs[0].opacity[i] == 1.0f);
-    CHECK(runs[0].albedo[4 * i] == Approx(0.25).epsilon(1e-3));
-    CHECK(runs[0].emission[4 * i + 1] == Approx(3.0).epsilon(5e-3));
+    CHECK(averages.opacity[i] == 1.0f);
+    CHECK(averages.albedo[4 * i] == Approx(0.25).epsilon(1e-3));
+    CHECK(averages.emission[4 * i + 1] == Approx(3.0).epsilon(5e-3));
   }
-  CHECK(occupied == runs[0].bits.size());
+  CHECK(occupied == averages.bits.size());
 }
 
 TEST_CASE("the grid of cone tracing takes coverages by the rule of the list") {
@@ -333,31 +284,22 @@ TEST_CASE("the grid of cone tracing takes coverages by the rule of the list") {
   SceneBuilder builder;
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f));
   builder.light(LightKind::directional, glm::vec3(2.0f * static_cast<float>(kPi)), {0, 0, 0}, {0, 0, -1});
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  const LightSet lights = sampleLights(builder.scene, snapshot, 1, 4);
+  LightSampleData sun{};
+  sun.direction = {0, 0, -1};
+  sun.firstView = -1;
+  sun.power = glm::vec3(2.0f * static_cast<float>(kPi));
   ShadowMap shadow;
-  shadow.lightCount = static_cast<int>(lights.samples.size());
-  shadow.layerCount = static_cast<int>(lights.views.size());
-  REQUIRE(shadow.lightCount == 1);
-  shadow.lights = std::make_shared<gpu::Buffer>(device(), sizeof(LightSampleData), "light");
-  shadow.lights->uploadValues(std::span<const LightSampleData>(lights.samples));
-  std::vector<glm::mat4> matrices;
-  for (const LightView& view : lights.views) matrices.push_back(view.worldToClip);
-  shadow.views = std::make_shared<gpu::Buffer>(device(), matrices.size() * sizeof(glm::mat4), "views");
-  shadow.views->uploadValues(std::span<const glm::mat4>(matrices));
-  shadow.depth = std::make_shared<gpu::Texture>(
-      device(),
-      gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::depth32f, 4, 4, shadow.layerCount, 1},
-      "depth");
-  shadow.depth->clear(glm::vec4(1.0f));
+  shadow.lightCount = shadow.layerCount = 1;
+  shadow.lights = bufferOf<LightSampleData>({sun});
+  shadow.views = bufferOf<glm::mat4>({glm::mat4(1.0f)});
+  shadow.depth = filled({gpu::TextureKind::d2Array, gpu::Format::depth32f}, glm::vec4(1.0f));
   const glm::ivec3 cell(2, 2, 2);
   const std::vector<FragmentData> fragments(3, fragment(cell, glm::vec3(0.6f), 0.25f, kUp));
   for (const auto rule : {VoxelFragments::Coverage::mean, VoxelFragments::Coverage::sum}) {
-    PassHarness harness(device(), techniques(), "voxel_cone_tracing", "inject", builder.scene, snapshot);
-    harness.setInput("fragments", listOf(fragments, rule));
-    harness.setInput("shadow", shadow);
-    harness.run();
-    const auto& grid = harness.output<RadianceGrid>("radiance");
+    const RadianceGrid grid = LonePass("voxel_cone_tracing.inject", builder.scene)
+                                  .in("fragments", listOf(fragments, rule))
+                                  .in("shadow", shadow)
+                                  .out<RadianceGrid>("radiance");
     const auto values = grid.radiance->downloadFloats();
     const glm::ivec3 size = grid.grid.resolution;  // may be larger than the list's
     const float* texel =
@@ -373,13 +315,10 @@ namespace {
 
 std::set<Cell> bitsOf(const std::vector<FragmentData>& fragments, VoxelFragments::Coverage rule,
                       const char* masks, std::uint64_t seed = 1) {
-  SceneBuilder builder;
-  PassHarness harness(device(), techniques(), "voxelization", "average", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  harness.setInput("fragments", listOf(fragments, rule));
-  harness.setParameter("masks", std::string(masks));
-  harness.run(seed);
-  return cellsOf(harness.output<BinaryGrid>("bits"));
+  return cellsOf(LonePass("voxelization.average", SceneBuilder().scene, {{"masks", masks}})
+                     .in("fragments", listOf(fragments, rule))
+                     .run(seed)
+                     .out<BinaryGrid>("bits"));
 }
 
 }  // namespace

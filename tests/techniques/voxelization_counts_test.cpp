@@ -2,10 +2,8 @@
 // it, and a frame whose guess was too small is never given out.
 #include <cmath>
 
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
-#include "support/voxel_fragments.h"
+#include "support/meshes.h"
+#include "support/voxelizers.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -14,26 +12,6 @@ namespace {
 
 constexpr int kSide = 32;  // voxels of a grid of 1.6 m around the camera at the origin
 const std::string kGrid = "resolution 32 around camera extent 1.6";
-
-/// A box of one mesh: each corner is there once.
-void addBlock(Scene& scene, int material, const glm::vec3& low, const glm::vec3& high) {
-  Object object;
-  object.name = "block";
-  object.firstVertex = static_cast<std::uint32_t>(scene.positions.size());
-  object.vertexCount = 8;
-  for (int k = 0; k < 8; ++k) {
-    scene.positions.emplace_back((k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y,
-                                 (k & 4) != 0 ? high.z : low.z);
-    scene.normals.emplace_back(0, 1, 0);
-    scene.texcoords.emplace_back(0.0f);
-  }
-  constexpr std::uint32_t kCorners[] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-  object.parts.push_back({material, static_cast<std::uint32_t>(scene.indices.size()),
-                          static_cast<std::uint32_t>(std::size(kCorners))});
-  for (const std::uint32_t corner : kCorners) scene.indices.push_back(object.firstVertex + corner);
-  scene.objects.push_back(object);
-}
 
 /// Sixty plates, one above the other, and a closed block beside them travel along x: at time 0 they are far
 /// outside of the grid, at time 1 the plates fill it, at time 2 the block does.
@@ -47,7 +25,7 @@ Scene travellers() {
   for (int i = 0; i < 60; ++i)
     builder.quad({-10.75f, -0.75f, -0.74f + 0.025f * static_cast<float>(i)}, {1.5f, 0, 0}, {0, 1.5f, 0},
                  i % 2 == 0 ? grey : areaLight);
-  addBlock(builder.scene, grey, {-20.75f, -0.75f, -0.75f}, {-19.25f, 0.75f, 0.75f});
+  addMesh(builder.scene, boxMesh({-20.75f, -0.75f, -0.75f}, {-19.25f, 0.75f, 0.75f}), grey);
   move(0);
   builder.quad({0, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, grey);  // stands still
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, 8, 8);
@@ -77,16 +55,11 @@ struct Run {
   }
   void at(double time, int frame) { executor.render(time, frame, PipelineExecutor::Images::no); }
   std::vector<FragmentData> fragments(const char* pass) const {
-    return voxelsOf(static_cast<const Out<VoxelFragments>*>(executor.output(pass, "fragments"))->value())
-        .fragments;
+    return voxelsOf(kept<VoxelFragments>(executor, pass, "fragments")).fragments;
   }
-  const AttributeGrid& means() const {
-    return static_cast<const Out<AttributeGrid>*>(executor.output("means", "attributes"))->value();
-  }
+  const AttributeGrid& means() const { return kept<AttributeGrid>(executor, "means", "attributes"); }
   std::vector<float> opacity() const {
-    return static_cast<const Out<OccupancyGrid>*>(executor.output("means", "opacity"))
-        ->value()
-        .opacity->downloadFloats();
+    return kept<OccupancyGrid>(executor, "means", "opacity").opacity->downloadFloats();
   }
   Scene scene;
   PipelineExecutor executor;
@@ -144,8 +117,7 @@ TEST_CASE("in a steady frame no pass of a voxelizer waits for the device") {
   CHECK(device().transfers().stalls == before);
   for (const PassRecord& pass : steady.passes) CHECK(pass.ran);
   // The counter does count: a download with work under way waits for it.
-  const VoxelFragments& list =
-      static_cast<const Out<VoxelFragments>*>(run.executor.output("touched", "fragments"))->value();
+  const VoxelFragments& list = kept<VoxelFragments>(run.executor, "touched", "fragments");
   list.count->download();
   CHECK(device().transfers().stalls == before);
   PassHarness harness(device(), techniques(), "voxelization", "conservative", run.scene,
@@ -160,16 +132,12 @@ TEST_CASE("in a steady frame no pass of a voxelizer waits for the device") {
 }
 
 TEST_CASE("a list from nothing of static geometry is as long as it has to be") {
-  Scene scene = litRoom(8, 8);
-  const Pipeline text =
-      Pipeline::parse("pipeline \"still\" {\n  pass voxels voxelization.conservative { resolution 24 }\n}\n",
-                      "made_by_a_test.pipeline");
-  PipelineExecutor executor(device(), techniques(), scene, text, {});
-  executor.keepOutput("voxels", "fragments");
+  const Scene scene = litRoom(8, 8);
+  VoxelizedFrames frames(scene, {"conservative"}, "resolution 24");
   const auto list = [&] {
-    executor.invalidate();
-    executor.render(0.0, 0, PipelineExecutor::Images::no);
-    return static_cast<const Out<VoxelFragments>*>(executor.output("voxels", "fragments"))->value();
+    frames.executor.invalidate();
+    frames.at(0.0);
+    return frames.list();
   };
   const std::vector<FragmentData> first = fragmentsOf(list());
   const VoxelFragments second = list();

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "lumivox/base/error.h"
+#include "support/facts.h"
+#include "support/passes.h"
 #include "support/voxel_fragments.h"
 
 using namespace lumivox;
@@ -12,49 +12,35 @@ using namespace lumivox::test;
 
 namespace {
 
-struct Setting {
-  const char* name;
-  double value;
-};
-
-Voxels pointsOf(const Scene& scene, const std::vector<Setting>& settings, std::uint64_t seed = 1) {
-  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
-  for (const Setting& setting : settings) {
-    if (std::string(setting.name) == "adaptive")
-      harness.setParameter("adaptive", std::string(setting.value != 0.0 ? "on" : "off"));
-    else
-      harness.setParameter(setting.name, setting.value);
-  }
-  harness.run(seed);
-  return voxelsOf(harness.output<VoxelFragments>("fragments"));
+Voxels pointsOf(const Scene& scene, const Settings& settings, std::uint64_t seed = 1) {
+  return voxelsOf(
+      LonePass("voxelization.points", scene, settings).run(seed).out<VoxelFragments>("fragments"));
+}
+/// In the world, m.
+glm::dvec3 placeOf(const Scene& scene, const Voxels& voxels, const FragmentData& fragment) {
+  return fragment.position() * double(voxels.grid.voxelSize) + glm::dvec3(voxels.grid.low) +
+         snapshotOf(scene, 0.0).origin;
+}
+/// Columns that a level floor of 64 voxels covers as a whole; those on its rim are covered in part.
+std::size_t innerColumns(const Voxels& voxels) {
+  std::set<Cell> columns;
+  for (const Cell& cell : voxels.occupied)
+    if (cell[0] >= 2 && cell[0] < 62 && cell[2] >= 2 && cell[2] < 62) columns.insert({cell[0], 0, cell[2]});
+  return columns.size();
 }
 
-/// One triangle: the half of a quad.
+/// The triangle of the origin, `edge1` and `edge1 + edge2`.
 Scene oneTriangle(const glm::vec3& edge1, const glm::vec3& edge2) {
   SceneBuilder builder;
-  Object& object = builder.quad({0, 0, 0}, edge1, edge2, builder.lambert(0.5f, 3.0f));
-  object.parts.front().indexCount = 3;
-  builder.scene.indices.resize(builder.scene.indices.size() - 3);
+  builder.mesh({{0, 0, 0}, edge1, edge1 + edge2}, builder.lambert(0.5f, 3.0f));
   return builder.scene;
 }
 
-/// A level square of `side` metres.
-Scene floorOf(float side, const Material& material = {}) {
+/// A level square of a metre.
+Scene levelFloor() {
   SceneBuilder builder;
-  builder.quad({0, 0, 0}, {0, 0, side}, {side, 0, 0}, builder.material(material));
+  builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, builder.lambert(0.5f));
   return builder.scene;
-}
-
-/// A texture of alternating texels of two values.
-SurfaceTexture checkers(int size, bool mask) {
-  SurfaceTexture texture;
-  texture.name = "checkers";
-  texture.width = texture.height = size;
-  texture.mask = mask;
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x)
-      for (int c = 0; c < (mask ? 1 : 3); ++c) texture.values.push_back((x + y) % 2 == 0 ? 1.0f : 0.0f);
-  return texture;
 }
 
 }  // namespace
@@ -68,8 +54,7 @@ TEST_CASE("the points of a triangle are uniform over its area") {
   std::array<int, 16> counts{};
   glm::dvec2 mean(0.0);
   for (const FragmentData& fragment : voxels.fragments) {
-    const glm::dvec3 posWorld = fragment.position() * static_cast<double>(voxels.grid.voxelSize) +
-                                glm::dvec3(voxels.grid.low) + glm::dvec3(snapshotOf(scene, 0.0).origin);
+    const glm::dvec3 posWorld = placeOf(scene, voxels, fragment);
     // p = a (3,0) + b (3,2): a + b is x / 3, b is y / 2.
     const double b = posWorld.y / 2.0, a = posWorld.x / 3.0 - b;
     mean += glm::dvec2(a, b) / static_cast<double>(kPoints);
@@ -117,16 +102,10 @@ TEST_CASE("regular points are the middles of the equal parts of a triangle, the 
   // thirds of a row further for those that point to the first corner, one third for the others. Their mean is
   // the triangle's middle, and of the 9 parts none holds two.
   const Scene scene = oneTriangle({3, 0, 0}, {0, 3, 0});  // (0,0), (3,0), (3,3): parts of edge 1
-  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
-  harness.setParameter("resolution", 200);
-  harness.setParameter("points", 7);
-  harness.setParameter("spread", "regular");
-  harness.run();
-  const Voxels voxels = voxelsOf(harness.output<VoxelFragments>("fragments"));
+  const Voxels voxels = pointsOf(scene, {{"resolution", 200}, {"points", 7}, {"spread", "regular"}});
   std::multiset<std::pair<long, long>> found, expected;
   for (const FragmentData& fragment : voxels.fragments) {
-    const glm::dvec3 posWorld = fragment.position() * static_cast<double>(voxels.grid.voxelSize) +
-                                glm::dvec3(voxels.grid.low) + glm::dvec3(snapshotOf(scene, 0.0).origin);
+    const glm::dvec3 posWorld = placeOf(scene, voxels, fragment);
     found.insert(
         {std::lround(300.0 * posWorld.x), std::lround(300.0 * posWorld.y)});  // hundredths of a third
   }
@@ -142,18 +121,9 @@ TEST_CASE("regular points are the middles of the equal parts of a triangle, the 
 TEST_CASE(
     "regular points leave no voxel of a plane out from two on a voxel on, where random ones miss some") {
   // Parts of a voxel's half: their middles are at most 0.75 voxels apart, so that every voxel holds one.
-  const Scene scene = floorOf(1.0f);
-  const auto inner = [&](const char* spread) {
-    PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
-    harness.setParameter("resolution", 64);
-    harness.setParameter("adaptive", "on");
-    harness.setParameter("density", 2.2);
-    harness.setParameter("spread", spread);
-    harness.run();
-    std::set<Cell> cells;
-    for (const Cell& cell : voxelsOf(harness.output<VoxelFragments>("fragments")).occupied)
-      if (cell[0] >= 2 && cell[0] < 62 && cell[2] >= 2 && cell[2] < 62) cells.insert({cell[0], 0, cell[2]});
-    return cells.size();
+  const auto inner = [](const char* spread) {
+    return innerColumns(pointsOf(
+        levelFloor(), {{"resolution", 64}, {"adaptive", "on"}, {"density", 2.2}, {"spread", spread}}));
   };
   CHECK(inner("regular") == 3600);
   CHECK(inner("random") < 3400);
@@ -161,58 +131,17 @@ TEST_CASE(
 
 TEST_CASE("adaptive points follow the area, and a plane's voxel is missed with probability exp(-density)") {
   // 62 of 64 voxels span the floor: the area of one triangle is 62^2 / 2 voxels, up to the slack of the grid.
-  const Scene scene = floorOf(1.0f);
+  const Scene scene = levelFloor();
   for (const double density : {0.5, 1.0, 2.0, 4.0}) {
-    const Voxels voxels = pointsOf(scene, {{"adaptive", 1}, {"density", density}, {"resolution", 64}});
+    const Voxels voxels = pointsOf(scene, {{"adaptive", "on"}, {"density", density}, {"resolution", 64}});
     const double side = 1.0 / voxels.grid.voxelSize;
     CHECK(voxels.fragments.size() == 2 * static_cast<std::size_t>(std::ceil(density * side * side / 2.0)));
-    // Of columns that the floor covers as a whole; those on its rim are covered for 49 parts of 50 or so.
-    std::set<Cell> inner;
-    for (const Cell& cell : voxels.occupied)
-      if (cell[0] >= 2 && cell[0] < 62 && cell[2] >= 2 && cell[2] < 62) inner.insert({cell[0], 0, cell[2]});
+    const auto inner = static_cast<double>(innerColumns(voxels));
     const double cells = 60.0 * 60.0, missed = std::exp(-density);
     const double deviation = std::sqrt(cells * missed * (1.0 - missed));
-    INFO("density " << density << ", voxels " << inner.size());
-    CHECK(std::abs(static_cast<double>(inner.size()) - cells * (1.0 - missed)) < 4.0 * deviation);
+    CAPTURE(density, inner);
+    CHECK(std::abs(inner - cells * (1.0 - missed)) < 4.0 * deviation);
   }
-}
-
-TEST_CASE("a point keeps albedo, normal and emission of its triangle") {
-  const Voxels voxels = pointsOf(oneTriangle({1, 0, 0}, {0, 1, 0}), {});
-  REQUIRE(voxels.fragments.size() == 19);
-  for (const FragmentData& fragment : voxels.fragments) {
-    CHECK(fragment.albedo() == glm::vec3(0.5f));
-    CHECK(fragment.coverage() == 1.0f);
-    CHECK(glm::length(fragment.unitNormal() - glm::vec3(0, 0, 1)) < 1e-4f);
-    CHECK(fragment.emittedRadiance() == glm::vec3(3.0f));
-  }
-}
-
-TEST_CASE("points see textures and masks through the mip that averages over a voxel") {
-  Material material;
-  material.diffuse = glm::vec3(1.0f);
-  material.diffuseTexture = 0;
-  material.maskTexture = 1;
-  Scene scene = floorOf(1.0f, material);
-  scene.textures = {checkers(256, false), checkers(256, true)};
-  // 16 texels a voxel: every mean is 1/2, up to the half floats of the mips.
-  const Voxels voxels = pointsOf(scene, {{"points", 200}, {"resolution", 16}});
-  REQUIRE(voxels.fragments.size() == 400);
-  for (const FragmentData& fragment : voxels.fragments) {
-    CHECK(fragment.albedo().g == Approx(0.5f).margin(2e-3));
-    CHECK(fragment.coverage() == Approx(0.5f).margin(2e-3));
-  }
-}
-
-TEST_CASE("a surface that a mask takes away leaves no points") {
-  Material material;
-  material.diffuse = glm::vec3(1.0f);
-  material.maskTexture = 0;
-  Scene scene = floorOf(1.0f, material);
-  SurfaceTexture hole = checkers(4, true);
-  hole.values.assign(hole.values.size(), 0.0f);
-  scene.textures = {hole};
-  CHECK(pointsOf(scene, {}).fragments.empty());
 }
 
 TEST_CASE("points outside a grid around the camera are left out, whatever size the triangle has") {
@@ -222,32 +151,9 @@ TEST_CASE("points outside a grid around the camera are left out, whatever size t
   builder.quad({0, 3.5f, 0}, {0, 0, 1}, {1, 0, 0}, builder.lambert(0.5f));
   Scene scene = builder.scene;
   scene.cameras.front().eye = {50, 0.5, 50};
-  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
-  harness.setParameter("around", std::string("camera"));
-  harness.setParameter("extent", 8.0);
-  harness.setParameter("resolution", 16);
-  harness.setParameter("adaptive", std::string("on"));
-  harness.run();
-  const std::set<Cell> cells = cellsOf(fragmentsOf(harness.output<VoxelFragments>("fragments")));
+  const std::set<Cell> cells =
+      pointsOf(scene, {{"around", "camera"}, {"extent", 8}, {"resolution", 16}, {"adaptive", "on"}}).occupied;
   CHECK(cells.size() == 16 * 16);  // each is missed once in 3000
-}
-
-TEST_CASE("points of nothing, of a point and of a line are no special cases") {
-  SceneBuilder empty;
-  CHECK(pointsOf(empty.scene, {}).fragments.empty());
-  for (const glm::vec3& edge : {glm::vec3(0, 0, 0), glm::vec3(1, 1, 0)}) {
-    SceneBuilder builder;
-    builder.quad({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, builder.lambert(0.5f));
-    Scene scene = builder.scene;
-    scene.positions[1] = scene.positions[0] + edge;
-    scene.positions[2] = scene.positions[0] + 2.0f * edge;
-    for (const double adaptive : {0.0, 1.0}) {
-      const Voxels voxels = pointsOf(scene, {{"adaptive", adaptive}});
-      CHECK(!voxels.fragments.empty());
-      for (const FragmentData& fragment : voxels.fragments)
-        CHECK(glm::length(fragment.unitNormal()) == Approx(1.0f));
-    }
-  }
 }
 
 namespace {
@@ -262,22 +168,17 @@ const char* const kReprojected = R"(pipeline "reprojected" {
 })";
 
 const VoxelFragments& listOf(const PipelineExecutor& executor, const char* pass) {
-  return static_cast<const Out<VoxelFragments>&>(*executor.output(pass, "fragments")).value();
+  return kept<VoxelFragments>(executor, pass, "fragments");
 }
 
 }  // namespace
 
 TEST_CASE("every pixel that sees a surface becomes one fragment in the voxel of what it sees") {
   const Scene scene = litRoom(48, 40);
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
-  camera.run();
-  const auto& gbuffer = camera.output<GBuffer>("gbuffer");
-  PassHarness harness(device(), techniques(), "voxelization", "reproject", scene, snapshot);
-  harness.setInput("gbuffer", gbuffer);
-  harness.setParameter("resolution", 32);
-  harness.run();
-  const auto& list = harness.output<VoxelFragments>("fragments");
+  const GBuffer gbuffer = gbufferOf(scene);
+  const VoxelFragments list = LonePass("voxelization.reproject", scene, {{"resolution", 32}})
+                                  .in("gbuffer", gbuffer)
+                                  .out<VoxelFragments>("fragments");
   const std::vector<FragmentData> fragments = fragmentsOf(list);
 
   const std::vector<float> positions = gbuffer.position->downloadFloats();
@@ -330,13 +231,7 @@ TEST_CASE("what the camera sees stands behind the fragments of another list, and
 TEST_CASE(
     "all of a list stands before what the camera sees, in however many rows of groups it is dispatched") {
   const Scene scene = litRoom(8, 8);
-  GBuffer nothing;
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  const auto empty = std::make_shared<gpu::Texture>(device(), description, "nothing seen");
-  empty->clear(glm::vec4(0.0f));
-  nothing.position = nothing.normal = nothing.geometricNormal = nothing.diffuse = nothing.emission = empty;
+  const GBuffer nothing = gbufferAt({.hit = false});
   std::vector<FragmentData> fragments(300);
   for (std::size_t i = 0; i < fragments.size(); ++i)
     fragments[i].voxel = static_cast<std::uint32_t>(i % 8 | i / 8 % 8 << 10 | i / 64 << 20);
@@ -346,16 +241,11 @@ TEST_CASE(
     VoxelFragments list;
     list.grid = {glm::vec3(0.0f), 0.1f, glm::ivec3(8)};
     list.capacity = fragments.size();
-    list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
-    list.fragments->uploadValues(std::span<const FragmentData>(fragments));
-    const std::array<std::uint32_t, 4> words{300, groups.x, groups.y, 1};
-    list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
-    list.count->uploadValues(std::span<const std::uint32_t>(words));
-    PassHarness harness(device(), techniques(), "voxelization", "reproject", scene, snapshotOf(scene, 0.0));
-    harness.setInput("gbuffer", nothing);
-    harness.setInput("fragments", list);
-    harness.run();
-    CHECK(fragmentsOf(harness.output<VoxelFragments>("fragments")) == fragments);
+    list.fragments = bufferOf(fragments);
+    list.count = bufferOf<std::uint32_t>({300, groups.x, groups.y, 1});
+    LonePass reproject("voxelization.reproject", scene);
+    reproject.in("gbuffer", nothing).in("fragments", list);
+    CHECK(fragmentsOf(reproject.out<VoxelFragments>("fragments")) == fragments);
   }
 }
 
@@ -363,32 +253,14 @@ TEST_CASE("a seen back side keeps the normal of its front and does not shine") {
   SceneBuilder builder;
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f, 2.0f));  // faces +z
   builder.look({0.5, 0.5, -2}, {0.5, 0.5, 0}, {0, 1, 0}, 0.8, 32, 32);
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", builder.scene, snapshot);
-  camera.run();
-  PassHarness harness(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
-  harness.setInput("gbuffer", camera.output<GBuffer>("gbuffer"));
-  harness.run();
-  const std::vector<FragmentData> fragments = fragmentsOf(harness.output<VoxelFragments>("fragments"));
+  const std::vector<FragmentData> fragments = fragmentsOf(LonePass("voxelization.reproject", builder.scene)
+                                                              .in("gbuffer", gbufferOf(builder.scene))
+                                                              .out<VoxelFragments>("fragments"));
   REQUIRE(!fragments.empty());
   for (const FragmentData& fragment : fragments) {
     CHECK(glm::length(fragment.unitNormal() - glm::vec3(0, 0, 1)) < 1e-4f);
     CHECK(fragment.emittedRadiance() == glm::vec3(0.0f));
   }
-}
-
-TEST_CASE("leaving out nothing gives the same points and the same seen voxels to the bit") {
-  const Scene scene = litRoom(32, 32);
-  const Pipeline pipeline = Pipeline::parse(kReprojected, "reprojected.pipeline");
-  RenderOptions everything;
-  everything.keepEverything = true;
-  PipelineExecutor pruned(device(), techniques(), scene, pipeline, {}),
-      whole(device(), techniques(), scene, pipeline, everything);
-  for (PipelineExecutor* executor : {&pruned, &whole}) {
-    executor->keepOutput("both", "fragments");
-    executor->render(0.0, 0, PipelineExecutor::Images::no);
-  }
-  CHECK(fragmentsOf(listOf(pruned, "both")) == fragmentsOf(listOf(whole, "both")));
 }
 
 namespace {
@@ -443,7 +315,7 @@ TEST_CASE("points of the image bring the direct light along that was computed th
   // All pixels: what they show without what they emit. A packed radiance is right to 1/256 of its largest
   // component.
   const ImageBuffer& direct = frame.outputs.at("direct");
-  const GBuffer& gbuffer = static_cast<const Out<GBuffer>&>(*executor.output("gbuffer", "gbuffer")).value();
+  const GBuffer& gbuffer = kept<GBuffer>(executor, "gbuffer", "gbuffer");
   const std::vector<float> positions = gbuffer.position->downloadFloats(),
                            emission = gbuffer.emission->downloadFloats();
   std::vector<float> expected, found;
@@ -474,7 +346,7 @@ TEST_CASE("light that came along by reprojection is the light that the voxels wo
   for (const char* pass : {"from_image", "from_lights"}) executor.keepOutput(pass, "radiance");
   executor.render(0.0, 0, PipelineExecutor::Images::no);
   const auto sumOf = [&](const char* pass) {
-    const auto& grid = static_cast<const Out<RadianceGrid>&>(*executor.output(pass, "radiance")).value();
+    const auto& grid = kept<RadianceGrid>(executor, pass, "radiance");
     const std::vector<float> values = grid.radiance->downloadFloats();
     glm::dvec4 sum(0.0);
     for (std::size_t i = 0; i < values.size(); i += 4)
@@ -494,29 +366,15 @@ TEST_CASE("a fragment whose direct light is known reflects just that, whatever s
   builder.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, builder.lambert(0.5f));
   builder.light(LightKind::point, glm::vec3(1e4f), {0, 0, 2});
   builder.look({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.9, 64, 64);
-  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", builder.scene, snapshot);
-  camera.run();
-  const GBuffer gbuffer = camera.output<GBuffer>("gbuffer");
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 64;
-  const auto painted = std::make_shared<gpu::Texture>(device(), description, "light");
-  painted->clear(glm::vec4(7.0f, 3.5f, 1.75f, 1.0f));  // what eight bits hold exactly
-  PassHarness reproject(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
-  reproject.setParameter("resolution", 8);
-  reproject.setInput("gbuffer", gbuffer);
-  reproject.setInput("direct", Image{painted});
-  reproject.run();
-  const VoxelFragments list = reproject.output<VoxelFragments>("fragments");
-  PassHarness shadows(device(), techniques(), "direct_lighting", "shadow_map", builder.scene, snapshot);
-  shadows.run();
-  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", builder.scene, snapshot);
-  inject.setParameter("precision", "float");
-  inject.setInput("fragments", list);
-  inject.setInput("shadow", shadows.output<ShadowMap>("depth"));
-  inject.run();
-  const auto& grid = inject.output<RadianceGrid>("radiance");
+  LonePass reproject("voxelization.reproject", builder.scene, {{"resolution", 8}});
+  reproject.in("gbuffer", gbufferOf(builder.scene));
+  // What eight bits hold exactly.
+  reproject.in("direct", Image{filled(pixels(64, 64), {7.0f, 3.5f, 1.75f, 1.0f})});
+  const VoxelFragments list = reproject.out<VoxelFragments>("fragments");
+  const RadianceGrid grid = LonePass("voxel_cone_tracing.inject", builder.scene, {{"precision", "float"}})
+                                .in("fragments", list)
+                                .in("shadow", shadowsOf(builder.scene))
+                                .out<RadianceGrid>("radiance");
   const std::vector<float> values = grid.radiance->downloadFloats();
   int occupied = 0;
   for (std::size_t i = 0; i < values.size(); i += 4) {
@@ -528,12 +386,9 @@ TEST_CASE("a fragment whose direct light is known reflects just that, whatever s
   }
   CHECK(occupied == 36);
   // A list that brings light along is not given light a second time.
-  reproject.setInput("fragments", list);
-  CHECK_THROWS_WITH(reproject.run(), Catch::Matchers::Contains("already contains direct light"));
+  CHECK_THROWS_MATCHES(reproject.in("fragments", list).run(), Error, Tells("fragments", "direct"));
   // An image of another size has no light for these pixels.
-  description.width = 32;
-  PassHarness wrong(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
-  wrong.setInput("gbuffer", gbuffer);
-  wrong.setInput("direct", Image{std::make_shared<gpu::Texture>(device(), description, "light")});
-  CHECK_THROWS_WITH(wrong.run(), Catch::Matchers::Contains("expected 64 x 64"));
+  LonePass wrong("voxelization.reproject", builder.scene);
+  wrong.in("gbuffer", gbufferOf(builder.scene)).in("direct", Image{filled(pixels(32, 64), glm::vec4(1.0f))});
+  CHECK_THROWS_MATCHES(wrong.run(), Error, Tells("direct", 32, 64, 64, 64));
 }

@@ -4,80 +4,14 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/scene/topology.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
-#include "support/voxel_fragments.h"
+#include "support/meshes.h"
+#include "support/voxelizers.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 namespace {
-
-/// Adds an object of triangles with shared vertices.
-Object& addMesh(Scene& scene, const std::string& name, const std::vector<glm::vec3>& places,
-                const std::vector<std::uint32_t>& corners) {
-  if (scene.materials.empty()) scene.materials.emplace_back();
-  Object object;
-  object.name = name;
-  object.firstVertex = static_cast<std::uint32_t>(scene.positions.size());
-  object.vertexCount = static_cast<std::uint32_t>(places.size());
-  object.parts.push_back(
-      {0, static_cast<std::uint32_t>(scene.indices.size()), static_cast<std::uint32_t>(corners.size())});
-  for (const glm::vec3& place : places) {
-    scene.positions.push_back(place);
-    scene.normals.emplace_back(0, 1, 0);
-    scene.texcoords.emplace_back(0.0f);
-  }
-  for (const std::uint32_t corner : corners) scene.indices.push_back(object.firstVertex + corner);
-  scene.objects.push_back(object);
-  return scene.objects.back();
-}
-
-struct Mesh {
-  std::vector<glm::vec3> places;
-  std::vector<std::uint32_t> corners;
-};
-
-/// A sphere of rings and a vertex at each pole; every vertex once.
-Mesh sphere(const glm::vec3& centre, float radius, int rings, bool inwards = false) {
-  Mesh mesh;
-  const int around = 2 * rings;
-  mesh.places.push_back(centre + glm::vec3(0, radius, 0));
-  for (int i = 1; i < rings; ++i)
-    for (int j = 0; j < around; ++j) {
-      const double theta = kPi * i / rings, phi = 2.0 * kPi * j / around;
-      mesh.places.push_back(centre + radius * glm::vec3(std::sin(theta) * std::sin(phi), std::cos(theta),
-                                                        std::sin(theta) * std::cos(phi)));
-    }
-  mesh.places.push_back(centre - glm::vec3(0, radius, 0));
-  const auto at = [&](int i, int j) {
-    if (i == 0) return std::uint32_t{0};
-    if (i == rings) return static_cast<std::uint32_t>(mesh.places.size() - 1);
-    return static_cast<std::uint32_t>(1 + (i - 1) * around + j % around);
-  };
-  const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (inwards) std::swap(b, c);
-    mesh.corners.insert(mesh.corners.end(), {a, b, c});
-  };
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < around; ++j) {
-      if (i > 0) triangle(at(i, j), at(i + 1, j), at(i, j + 1));
-      if (i < rings - 1) triangle(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-    }
-  return mesh;
-}
-
-Mesh box(const glm::vec3& low, const glm::vec3& high) {
-  Mesh mesh;
-  for (int k = 0; k < 8; ++k)
-    mesh.places.emplace_back((k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y,
-                             (k & 4) != 0 ? high.z : low.z);
-  mesh.corners = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-  return mesh;
-}
 
 Mesh operator+(Mesh a, const Mesh& b) {
   for (const std::uint32_t corner : b.corners)
@@ -86,14 +20,9 @@ Mesh operator+(Mesh a, const Mesh& b) {
   return a;
 }
 
-Scene emptyScene() {
-  return SceneBuilder().scene;
-}
-
 Scene sceneOf(const std::vector<Mesh>& meshes) {
-  Scene scene = emptyScene();
-  for (const Mesh& mesh : meshes)
-    addMesh(scene, "mesh " + std::to_string(scene.objects.size()), mesh.places, mesh.corners);
+  Scene scene = SceneBuilder().scene;
+  for (const Mesh& mesh : meshes) addMesh(scene, mesh);
   return scene;
 }
 
@@ -108,15 +37,10 @@ struct Solid {
   }
 };
 
-Solid solidOf(const Scene& scene, int resolution,
-              const std::function<void(PassHarness&)>& configure = nullptr) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness harness(device(), techniques(), "voxelization", "solid", scene, snapshot);
-  harness.setParameter("resolution", resolution);
-  if (configure) configure(harness);
-  harness.run();
-  const auto& bits = harness.output<BinaryGrid>("bits");
-  return {bits.grid, cellsOf(bits), snapshot.origin};
+Solid solidOf(const Scene& scene, int resolution, const Settings& settings = {}, double time = 0.0) {
+  LonePass pass("voxelization.solid", scene, {{"resolution", resolution}}, time);
+  const auto& bits = pass.with(settings).out<BinaryGrid>("bits");
+  return {bits.grid, cellsOf(bits), snapshotOf(scene, time).origin};
 }
 
 /// Calls `check(cell, centre)` for every voxel of the grid.
@@ -130,7 +54,7 @@ void forEachVoxel(const Solid& solid, Check&& check) {
 }  // namespace
 
 TEST_CASE("the solid volume of a sphere converges to 4/3 pi r^3") {
-  const Scene scene = sceneOf({sphere({0.3f, -0.2f, 0.1f}, 1.0f, 128)});
+  const Scene scene = sceneOf({sphereMesh({0.3f, -0.2f, 0.1f}, 1.0f, 128)});
   // The polyhedron itself is smaller by about 2 / 3 (pi / rings)^2 of the volume, 0.04 %.
   const double exact = 4.0 / 3.0 * kPi;
   for (const int resolution : {16, 32, 64, 128}) {
@@ -146,14 +70,13 @@ TEST_CASE("the solid volume of a sphere converges to 4/3 pi r^3") {
 TEST_CASE("a voxel is solid where its centre lies inside, for boxes to the last voxel") {
   std::mt19937 generator(5);
   std::uniform_real_distribution<float> uniform(0.05f, 0.95f);
-  Scene scene = emptyScene();
+  Scene scene = SceneBuilder().scene;
   std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes;
   for (int i = 0; i < 12; ++i) {
     const glm::vec3 a(uniform(generator), uniform(generator), uniform(generator)),
         b(uniform(generator), uniform(generator), uniform(generator));
     boxes.emplace_back(glm::min(a, b), glm::max(a, b));
-    const Mesh mesh = box(glm::min(a, b), glm::max(a, b));
-    addMesh(scene, "box " + std::to_string(i), mesh.places, mesh.corners);
+    addMesh(scene, boxMesh(glm::min(a, b), glm::max(a, b)));
   }
   const Solid solid = solidOf(scene, 40);
   std::size_t wrong = 0, undecided = 0;
@@ -178,7 +101,7 @@ TEST_CASE("thousands of tetrahedra agree with a point-in-tetrahedron test and no
   std::mt19937 generator(11);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   const auto vector = [&] { return glm::vec3(uniform(generator), uniform(generator), uniform(generator)); };
-  Scene scene = emptyScene();
+  Scene scene = SceneBuilder().scene;
   std::vector<std::array<glm::dvec3, 4>> tetrahedra;
   for (int i = 0; i < 300; ++i) {
     const glm::vec3 place = vector();
@@ -188,7 +111,7 @@ TEST_CASE("thousands of tetrahedra agree with a point-in-tetrahedron test and no
     const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (glm::dot(normal, corners[3] - corners[0]) < 0.0f)
       for (std::size_t f = 0; f < faces.size(); f += 3) std::swap(faces[f + 1], faces[f + 2]);
-    addMesh(scene, "tetrahedron", corners, faces);
+    addMesh(scene, {corners, faces});
     tetrahedra.push_back({corners[0], corners[1], corners[2], corners[3]});
   }
   const Solid solid = solidOf(scene, 48);
@@ -217,24 +140,21 @@ TEST_CASE("thousands of tetrahedra agree with a point-in-tetrahedron test and no
 }
 
 TEST_CASE("a closed surface inside another of its object is a cavity, objects inside each other are one") {
-  const Mesh outer = sphere({0, 0, 0}, 1.0f, 48), inner = sphere({0, 0, 0}, 0.5f, 48, true);
+  const Mesh outer = sphereMesh({0, 0, 0}, 1.0f, 48), inner = sphereMesh({0, 0, 0}, 0.5f, 48, true);
   const Solid cavity = solidOf(sceneOf({outer + inner}), 48);
   CHECK(cavity.volume() == Approx(4.0 / 3.0 * kPi * (1.0 - 0.125)).epsilon(0.01));
   forEachVoxel(cavity, [&](const Cell& cell, const glm::dvec3& centre) {
     if (glm::length(centre) < 0.45) CHECK(cavity.cells.count(cell) == 0);
   });
-  const Solid whole = solidOf(sceneOf({outer, sphere({0, 0, 0}, 0.5f, 48)}), 48);
+  const Solid whole = solidOf(sceneOf({outer, sphereMesh({0, 0, 0}, 0.5f, 48)}), 48);
   CHECK(whole.volume() == Approx(4.0 / 3.0 * kPi).epsilon(0.01));
   CHECK(whole.cells == solidOf(sceneOf({outer}), 48).cells);
 }
 
 TEST_CASE("inside a mesh larger than the grid around the camera everything is solid") {
-  Scene scene = sceneOf({sphere({0, 0, 0}, 10.0f, 64)});
+  Scene scene = sceneOf({sphereMesh({0, 0, 0}, 10.0f, 64)});
   scene.cameras.front().eye = {1, 2, 3};
-  const auto around = [](PassHarness& harness) {
-    harness.setParameter("around", std::string("camera"));
-    harness.setParameter("extent", 4.0);
-  };
+  const Settings around{{"around", "camera"}, {"extent", 4}};
   // The last word of bits of a column may be used in part.
   for (const std::size_t side : {16u, 32u, 72u})
     CHECK(solidOf(scene, static_cast<int>(side), around).cells.size() == side * side * side);
@@ -255,9 +175,9 @@ TEST_CASE("inside a mesh larger than the grid around the camera everything is so
 }
 
 TEST_CASE("an open mesh is named with its open edges and has no inside, and closed ones beside it have") {
-  Mesh open = sphere({3, 0, 0}, 1.0f, 16);
+  Mesh open = sphereMesh({3, 0, 0}, 1.0f, 16);
   open.corners.resize(open.corners.size() - 3);
-  Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 16), open});
+  Scene scene = sceneOf({sphereMesh({0, 0, 0}, 1.0f, 16), open});
   const LogCapture log;
   const Solid solid = solidOf(scene, 32);
   CHECK(log.text().find("'mesh 1' (3 open edges)") != std::string::npos);
@@ -267,19 +187,18 @@ TEST_CASE("an open mesh is named with its open edges and has no inside, and clos
 }
 
 TEST_CASE("a closed room that faces inwards holds air, unless it is asked to be filled") {
-  const Scene scene = sceneOf({sphere({0, 0, 0}, 2.0f, 24, true), sphere({0, 0, 0}, 0.5f, 24)});
+  const Scene scene = sceneOf({sphereMesh({0, 0, 0}, 2.0f, 24, true), sphereMesh({0, 0, 0}, 0.5f, 24)});
   const LogCapture log;
   const Solid furnished = solidOf(scene, 48);
   CHECK(log.text().find("'mesh 0'") != std::string::npos);
   // A radius of six voxels: lattice points say the volume to a tenth.
   CHECK(furnished.volume() == Approx(4.0 / 3.0 * kPi * 0.125).epsilon(0.1));
-  const Solid filled =
-      solidOf(scene, 48, [](PassHarness& harness) { harness.setParameter("inwards", std::string("fill")); });
+  const Solid filled = solidOf(scene, 48, {{"inwards", "fill"}});
   CHECK(filled.volume() == Approx(4.0 / 3.0 * kPi * 8.0).epsilon(0.02));
 }
 
 TEST_CASE("faces that are there twice, and boxes that share a face, are filled once") {
-  const Mesh one = box({0, 0, 0}, {1, 1, 1});
+  const Mesh one = boxMesh({0, 0, 0}, {1, 1, 1});
   Mesh twice = one;
   twice.corners.insert(twice.corners.end(), one.corners.begin(), one.corners.end());
   Mesh twiceSplit = one + one;
@@ -289,8 +208,8 @@ TEST_CASE("faces that are there twice, and boxes that share a face, are filled o
   CHECK(solidOf(sceneOf({twiceSplit}), 18).cells == expected);
   CHECK(solidOf(sceneOf({one, one}), 18).cells == expected);
   // Two boxes with a common face, as one object and as two, are the long box.
-  const Mesh left = box({0, 0, 0}, {1, 1, 1}), right = box({1, 0, 0}, {2, 1, 1});
-  const std::set<Cell> row = solidOf(sceneOf({box({0, 0, 0}, {2, 1, 1})}), 34).cells;
+  const Mesh left = boxMesh({0, 0, 0}, {1, 1, 1}), right = boxMesh({1, 0, 0}, {2, 1, 1});
+  const std::set<Cell> row = solidOf(sceneOf({boxMesh({0, 0, 0}, {2, 1, 1})}), 34).cells;
   CHECK(row.size() == 32u * 16u * 16u);
   CHECK(solidOf(sceneOf({left, right}), 34).cells == row);
   CHECK(solidOf(sceneOf({left + right}), 34).cells == row);
@@ -298,46 +217,29 @@ TEST_CASE("faces that are there twice, and boxes that share a face, are filled o
 
 TEST_CASE(
     "a mesh on the border of a grid without margin fills it, and each level of the stacks is the union") {
-  const Solid full = solidOf(sceneOf({box({0, 0, 0}, {1, 1, 1})}), 7);
+  const Solid full = solidOf(sceneOf({boxMesh({0, 0, 0}, {1, 1, 1})}), 7);
   CHECK(full.cells.size() == 7u * 7u * 7u);
 
-  const Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 32), sphere({1.2f, 0.4f, 0.3f}, 0.4f, 32)});
-  PassHarness harness(device(), techniques(), "voxelization", "solid", scene, snapshotOf(scene, 0.0));
-  harness.setParameter("resolution", 150);  // more than one layer of stacks, odd sizes on the way down
-  harness.run();
-  const auto& bits = harness.output<BinaryGrid>("bits");
-  const gpu::TextureDescription& description = bits.stacks->description();
-  std::set<Cell> finer = cellsOf(bits);
-  for (int level = 1; level < description.levels; ++level) {
-    const int width = std::max(description.width >> level, 1),
-              height = std::max(description.height >> level, 1);
-    std::set<Cell> expected;
-    for (const Cell& cell : finer)
-      expected.insert({std::min(cell[0] / 2, width - 1), std::min(cell[1] / 2, height - 1), cell[2]});
-    const std::set<Cell> found = cellsOf(bits, level);
-    CHECK(found == expected);
-    finer = found;
-  }
+  const Scene scene = sceneOf({sphereMesh({0, 0, 0}, 1.0f, 32), sphereMesh({1.2f, 0.4f, 0.3f}, 0.4f, 32)});
+  // More than one layer of stacks, odd sizes on the way down.
+  LonePass pass("voxelization.solid", scene, {{"resolution", 150}});
+  const auto& bits = pass.out<BinaryGrid>("bits");
+  checkLevelsAreUnions(bits);
 }
 
 TEST_CASE(
     "opacity and fragments say the same as the bits, and surface samples keep their voxels to themselves") {
-  const Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 32)});
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness surface(device(), techniques(), "voxelization", "conservative", scene, snapshot);
-  surface.setParameter("resolution", 24);
-  surface.run();
-  const Voxels shell = voxelsOf(surface.output<VoxelFragments>("fragments"));
-
-  PassHarness harness(device(), techniques(), "voxelization", "solid", scene, snapshot);
-  harness.setInput("fragments", surface.output<VoxelFragments>("fragments"));
-  harness.run();
+  const Scene scene = sceneOf({sphereMesh({0, 0, 0}, 1.0f, 32)});
+  const VoxelFragments surface = fragmentsIn(scene, {{"resolution", 24}});
+  const Voxels shell = voxelsOf(surface);
+  LonePass pass("voxelization.solid", scene);
+  pass.in("fragments", surface);
   const std::set<Cell> inside = solidOf(scene, 24).cells;
   std::set<Cell> expected = inside;
   expected.insert(shell.occupied.begin(), shell.occupied.end());
-  CHECK(cellsOf(harness.output<BinaryGrid>("bits")) == expected);
+  CHECK(cellsOf(pass.out<BinaryGrid>("bits")) == expected);
 
-  const Voxels all = voxelsOf(harness.output<VoxelFragments>("fragments"));
+  const Voxels all = voxelsOf(pass.out<VoxelFragments>("fragments"));
   CHECK(all.occupied == expected);
   std::size_t hidden = 0;
   for (const Cell& cell : inside) hidden += shell.occupied.count(cell) == 0;
@@ -353,7 +255,7 @@ TEST_CASE(
     CHECK(fragment.emission == 0);
   }
 
-  const auto& opacity = harness.output<OccupancyGrid>("opacity");
+  const auto& opacity = pass.out<OccupancyGrid>("opacity");
   const std::vector<float> values = opacity.opacity->downloadFloats();
   const glm::ivec3 size = opacity.grid.resolution;
   std::set<Cell> opaque;
@@ -366,40 +268,25 @@ TEST_CASE(
 }
 
 TEST_CASE("a solid that moves leaves nothing behind, and static geometry is filled once") {
-  Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 24), box({-1, -1.5f, -1}, {1, -1.2f, 1})});
+  Scene scene = sceneOf({sphereMesh({0, 0, 0}, 1.0f, 24), boxMesh({-1, -1.5f, -1}, {1, -1.2f, 1})});
   scene.objects[0].motion = RigidMotion{{0, 1, 0}, 1.0, {0.5, 0, 0}, {0, 0, 0}};
-  const Pipeline text = Pipeline::parse(R"(pipeline "solid" {
-  pass gbuffer direct_lighting.gbuffer { }
-  pass direct direct_lighting.shade { gbuffer gbuffer }
-  pass voxels voxelization.solid { resolution 32 }
-  output direct direct.radiance
-})",
-                                        "solid.pipeline");
-  RenderOptions options;
-  options.width = options.height = 8;
-  const auto at = [&](PipelineExecutor& executor, double time) {
-    executor.render(time, 0, PipelineExecutor::Images::no);
-    return cellsOf(static_cast<const Out<BinaryGrid>&>(*executor.output("voxels", "bits")).value());
-  };
-  PipelineExecutor executor(device(), techniques(), scene, text, options);
-  executor.keepOutput("voxels", "bits");
-  std::set<Cell> before;
+  const Voxelizer solid{"solid"};
+  RenderOptions everything;
+  everything.keepEverything = true;
+  VoxelizedFrames frames(scene, solid, "resolution 32");
+  Voxels before;
   for (const double time : {0.0, 0.7, 0.3, 100.0}) {
-    const std::set<Cell> cells = at(executor, time);
-    for (const bool everything : {false, true}) {
-      RenderOptions fresh = options;
-      fresh.keepEverything = everything;
-      PipelineExecutor alone(device(), techniques(), scene, text, fresh);
-      alone.keepOutput("voxels", "bits");
-      CHECK(cells == at(alone, time));
-    }
-    CHECK(cells != before);
-    before = cells;
+    const Voxels voxels = frames.at(time);
+    CHECK(voxels.fragments == VoxelizedFrames(scene, solid, "resolution 32").at(time).fragments);
+    CHECK(voxels.fragments == VoxelizedFrames(scene, solid, "resolution 32", everything).at(time).fragments);
+    CHECK(voxels.fragments != before.fragments);
+    before = voxels;
   }
+  CHECK(frames.reusesStill());
 }
 
 TEST_CASE("the inside of what deforms is that of its shape at the time") {
-  Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 32)});
+  Scene scene = sceneOf({sphereMesh({0, 0, 0}, 1.0f, 32)});
   VertexSequence sequence;
   sequence.framesPerSecond = 1.0;
   for (const float radius : {1.0f, 0.5f}) {
@@ -408,12 +295,7 @@ TEST_CASE("the inside of what deforms is that of its shape at the time") {
     sequence.normals.push_back(scene.normals);
   }
   scene.objects[0].sequence = sequence;
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.5);  // half way: a radius of 0.75
-  PassHarness harness(device(), techniques(), "voxelization", "solid", scene, snapshot);
-  harness.setParameter("resolution", 64);
-  harness.run();
-  const auto& bits = harness.output<BinaryGrid>("bits");
-  const Solid solid{bits.grid, cellsOf(bits), snapshot.origin};
+  const Solid solid = solidOf(scene, 64, {}, 0.5);  // half way: a radius of 0.75
   CHECK(solid.volume() == Approx(4.0 / 3.0 * kPi * std::pow(0.75, 3.0)).epsilon(0.01));
 }
 
@@ -439,21 +321,16 @@ TEST_CASE("the solid volume of a scanned model is that of its mesh") {
 TEST_CASE("the view shows cubes where voxels are, and the cut lays their inside open") {
   // A box of 2 m seen from 4 m away: its front, at 3 m, fills 2 / (2 * 3 * tan(fov / 2)) of the image's
   // side.
-  Scene scene = sceneOf({box({-1, -1, -1}, {1, 1, 1})});
+  Scene scene = sceneOf({boxMesh({-1, -1, -1}, {1, 1, 1})});
   Camera& camera = scene.cameras.front();
   camera.eye = {0, 0, 4};
   camera.fov = 1.0;
   camera.width = camera.height = 64;
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness solid(device(), techniques(), "voxelization", "solid", scene, snapshot);
-  solid.setParameter("resolution", 34);
-  solid.run();
+  const VoxelFragments solid =
+      LonePass("voxelization.solid", scene, {{"resolution", 34}}).out<VoxelFragments>("fragments");
   const auto brightPixels = [&](double cut, float brightness) {
-    PassHarness view(device(), techniques(), "voxelization", "view", scene, snapshot);
-    view.setInput("fragments", solid.output<VoxelFragments>("fragments"));
-    view.setParameter("cut", cut);
-    view.run();
-    const std::vector<float> values = view.output<Image>("image").texture->downloadFloats();
+    const std::vector<float> values =
+        LonePass("voxelization.view", scene, {{"cut", cut}}).in("fragments", solid).floats("image");
     int count = 0;
     for (std::size_t i = 0; i < values.size(); i += 4) count += std::abs(values[i] - brightness) < 1e-4f;
     return count;
@@ -468,7 +345,7 @@ TEST_CASE("the view shows cubes where voxels are, and the cut lays their inside 
 }
 
 TEST_CASE("nothing has no inside") {
-  CHECK(solidOf(emptyScene(), 16).cells.empty());
-  Mesh line = box({0, 0, 0}, {1, 0, 0});
+  CHECK(solidOf(SceneBuilder().scene, 16).cells.empty());
+  Mesh line = boxMesh({0, 0, 0}, {1, 0, 0});
   CHECK(solidOf(sceneOf({line}), 16).cells.empty());
 }

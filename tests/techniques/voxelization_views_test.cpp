@@ -6,9 +6,8 @@
 #include <numeric>
 #include <set>
 
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/meshes.h"
+#include "support/passes.h"
 #include "support/voxel_fragments.h"
 
 using namespace lumivox;
@@ -16,54 +15,20 @@ using namespace lumivox::test;
 
 namespace {
 
-using Numbers = std::vector<std::pair<std::string, double>>;
-
-/// A pass alone.
-std::unique_ptr<PassHarness> harnessOf(const Scene& scene, const std::string& pass, int resolution,
-                                       const Numbers& parameters = {}) {
-  auto harness = std::make_unique<PassHarness>(device(), techniques(), "voxelization", pass, scene,
-                                               snapshotOf(scene, 0.0));
-  harness->setParameter("resolution", resolution);
-  for (const auto& [name, value] : parameters) harness->setParameter(name, value);
-  harness->run();
-  return harness;
+LonePass voxelizer(const Scene& scene, const std::string& pass, const Settings& settings) {
+  return LonePass("voxelization." + pass, scene, settings);
 }
 
-Voxels voxelize(const Scene& scene, const std::string& pass, int resolution, const Numbers& parameters = {}) {
-  const auto harness = harnessOf(scene, pass, resolution, parameters);
-  return voxelsOf(harness->output<VoxelFragments>("fragments"));
+Voxels voxelize(const Scene& scene, const std::string& pass, int resolution, const Settings& settings = {}) {
+  return voxelsOf(
+      voxelizer(scene, pass, settings).with({{"resolution", resolution}}).out<VoxelFragments>("fragments"));
 }
+const Settings kThreeAxes{{"axes", 3}};
 
-/// A sphere of triangles with its normals.
-Scene sphere(float radius, int rings) {
+Scene sphere(int rings) {
   SceneBuilder builder;
-  Scene& scene = builder.scene;
-  const int grey = builder.lambert(0.5f);
-  for (int i = 0; i <= rings; ++i) {
-    for (int j = 0; j <= 2 * rings; ++j) {
-      const double theta = kPi * i / rings, phi = kPi * j / rings;
-      const glm::vec3 direction(std::sin(theta) * std::cos(phi), std::cos(theta),
-                                std::sin(theta) * std::sin(phi));
-      scene.positions.push_back(radius * direction);
-      scene.normals.push_back(direction);
-      scene.texcoords.emplace_back(0.0f);
-    }
-  }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (2 * rings + 1) + j); };
-  for (int i = 0; i < rings; ++i) {
-    for (int j = 0; j < 2 * rings; ++j) {
-      for (const std::uint32_t index : {at(i, j), at(i, j + 1), at(i + 1, j + 1)})
-        scene.indices.push_back(index);
-      for (const std::uint32_t index : {at(i, j), at(i + 1, j + 1), at(i + 1, j)})
-        scene.indices.push_back(index);
-    }
-  }
-  Object object;
-  object.name = "sphere";
-  object.vertexCount = static_cast<std::uint32_t>(scene.positions.size());
-  object.parts.push_back({grey, 0, static_cast<std::uint32_t>(scene.indices.size())});
-  scene.objects.push_back(object);
-  return scene;
+  builder.mesh(sphereCorners(rings), builder.lambert(0.5f));
+  return builder.scene;
 }
 
 /// A square of 2 m across an axis, at zero.
@@ -77,8 +42,6 @@ Scene wall(int axis, float albedo = 0.5f) {
   return builder.scene;
 }
 
-const std::vector<std::string> kVoxelizers{"slicing", "depth_peeling", "msaa_opacity"};
-
 }  // namespace
 
 TEST_CASE("voxelizers that look along axes invent no voxel and find the share of a sphere that theory says") {
@@ -88,7 +51,7 @@ TEST_CASE("voxelizers that look along axes invent no voxel and find the share of
   // sqrt(2) / pi atan(1 / sqrt(2)).
   const double oneAxis = 1.0 / 3.0,
                threeAxes = 3.0 * std::sqrt(2.0) / kPi * std::atan(1.0 / std::sqrt(2.0)) / 1.5;
-  const Scene ball = sphere(1.0f, 24);
+  const Scene ball = sphere(24);
   const Voxels reference = voxelize(ball, "conservative", 32);
   const auto share = [&](const Voxels& voxels) {
     return static_cast<double>(voxels.occupied.size()) / static_cast<double>(reference.occupied.size());
@@ -97,8 +60,7 @@ TEST_CASE("voxelizers that look along axes invent no voxel and find the share of
     return std::count_if(voxels.occupied.begin(), voxels.occupied.end(),
                          [&](const Cell& cell) { return reference.occupied.count(cell) == 0; });
   };
-  const Voxels one = voxelize(ball, "slicing", 32),
-               three = voxelize(ball, "slicing", 32, Numbers{{"axes", 3.0}}),
+  const Voxels one = voxelize(ball, "slicing", 32), three = voxelize(ball, "slicing", 32, kThreeAxes),
                peeled = voxelize(ball, "depth_peeling", 32), msaa = voxelize(ball, "msaa_opacity", 32);
   INFO("slices " << share(one) << ", along three axes " << share(three) << ", peeled " << share(peeled)
                  << ", multisampled " << share(msaa));
@@ -111,9 +73,9 @@ TEST_CASE("voxelizers that look along axes invent no voxel and find the share of
 }
 
 TEST_CASE("peeled layers hold what slices along three axes hold") {
-  const Scene ball = sphere(1.0f, 24);
+  const Scene ball = sphere(24);
   const Voxels peeled = voxelize(ball, "depth_peeling", 33),
-               sliced = voxelize(ball, "slicing", 33, Numbers{{"axes", 3.0}});
+               sliced = voxelize(ball, "slicing", 33, kThreeAxes);
   // Both see every surface at every pixel's centre. Clipping makes new corners, which the rasteriser rounds
   // again, so that a few pixels on the silhouettes differ.
   std::vector<Cell> different;
@@ -128,7 +90,7 @@ TEST_CASE(
   // A wall of 14 by 14 voxels; the pixels on its border have their centres inside.
   CHECK(voxelize(wall(2), "slicing", 16).occupied.size() == 14u * 14u);
   for (int axis = 0; axis < 3; ++axis) {
-    CHECK(voxelize(wall(axis), "slicing", 16, Numbers{{"axes", 3.0}}).occupied.size() == 14u * 14u);
+    CHECK(voxelize(wall(axis), "slicing", 16, kThreeAxes).occupied.size() == 14u * 14u);
     CHECK(voxelize(wall(axis), "depth_peeling", 16).occupied.size() == 14u * 14u);
     CHECK(voxelize(wall(axis), "msaa_opacity", 16).occupied.size() == 14u * 14u);
   }
@@ -145,7 +107,7 @@ TEST_CASE("every surface behind others is peeled, until the layers end") {
                reference = voxelize(builder.scene, "conservative", 18);
   CHECK(all.occupied == reference.occupied);
   CHECK(all.fragments.size() == 11u * 16u * 16u);
-  const Voxels few = voxelize(builder.scene, "depth_peeling", 18, Numbers{{"layers", 3.0}});
+  const Voxels few = voxelize(builder.scene, "depth_peeling", 18, {{"layers", 3.0}});
   CHECK(few.fragments.size() == 3u * 16u * 16u);
 }
 
@@ -153,26 +115,17 @@ TEST_CASE("the coverages of a wall made of many triangles add up to one in every
   // A fan of slivers about a corner: their samples share out every pixel.
   SceneBuilder builder;
   const int grey = builder.lambert(0.5f);
-  Scene& scene = builder.scene;
   constexpr int kSlivers = 40;
-  for (int i = 0; i <= kSlivers; ++i) {
+  const auto at = [](int i) {
     const float t = static_cast<float>(i) / kSlivers;
-    scene.positions.emplace_back(t < 0.5f ? glm::vec3(1, 4 * t - 1, 0) : glm::vec3(3 - 4 * t, 1, 0));
-  }
-  scene.positions.emplace_back(-1, -1, 0);
-  scene.normals.assign(scene.positions.size(), {0, 0, 1});
-  scene.texcoords.assign(scene.positions.size(), {0, 0});
-  for (std::uint32_t i = 0; i < kSlivers; ++i) {
-    for (const std::uint32_t index : {kSlivers + 1u, i, i + 1}) scene.indices.push_back(index);
-  }
-  Object object;
-  object.name = "fan";
-  object.vertexCount = static_cast<std::uint32_t>(scene.positions.size());
-  object.parts.push_back({grey, 0, static_cast<std::uint32_t>(scene.indices.size())});
-  scene.objects.push_back(object);
-
-  const auto harness = harnessOf(scene, "msaa_opacity", 16);
-  const auto& list = harness->output<VoxelFragments>("fragments");
+    return t < 0.5f ? glm::vec3(1, 4 * t - 1, 0) : glm::vec3(3 - 4 * t, 1, 0);
+  };
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < kSlivers; ++i)
+    for (const glm::vec3& corner : {glm::vec3(-1, -1, 0), at(i), at(i + 1)}) corners.push_back(corner);
+  builder.mesh(corners, grey);
+  const VoxelFragments list =
+      voxelizer(builder.scene, "msaa_opacity", {{"resolution", 16}}).out<VoxelFragments>("fragments");
   CHECK(list.coverage == VoxelFragments::Coverage::sum);
   std::map<std::uint32_t, double> sums;
   for (const FragmentData& fragment : fragmentsOf(list)) sums[fragment.voxel] += fragment.coverage();
@@ -195,8 +148,9 @@ TEST_CASE("a strip is as opaque in the voxel where it begins as the samples that
     builder.box({-1, -1, -1}, {1, 1, 1}, grey, false);
     builder.quad({-1.0f + (3.0f + start) / 7.0f, -0.5f, 0.02f}, {(4.0f - start) / 7.0f, 0, 0}, {0, 1, 0},
                  grey);
-    const auto harness = harnessOf(builder.scene, "msaa_opacity", 16);
-    const auto opacities = harness->output<OccupancyGrid>("opacity_z").opacity->downloadFloats();
+    const auto opacities = voxelizer(builder.scene, "msaa_opacity", {{"resolution", 16}})
+                               .out<OccupancyGrid>("opacity_z")
+                               .opacity->downloadFloats();
     const auto at = [&](int x) { return opacities[static_cast<std::size_t>((8 * 16 + 8) * 16 + x)]; };
     const auto covered = std::count_if(samples.begin(), samples.end(),
                                        [&](const glm::vec2& sample) { return sample.x > start; });
@@ -221,15 +175,11 @@ double coverageOf(const glm::dvec2& low, const glm::dvec2& size, int supersampli
   for (const float end : {-100.0f, 100.0f})
     builder.quad(glm::vec3(end), {-0.005f * end, 0, 0}, {0, -0.005f * end, 0}, 0);
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, 8, 8);
-  PassHarness harness(device(), techniques(), "voxelization", "msaa_opacity", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  harness.setParameter("resolution", 8);
-  harness.setParameter("around", "camera");
-  harness.setParameter("extent", 8.0);
-  harness.setParameter("supersampling", supersampling);
-  harness.run();
+  LonePass pass =
+      voxelizer(builder.scene, "msaa_opacity",
+                {{"resolution", 8}, {"around", "camera"}, {"extent", 8}, {"supersampling", supersampling}});
   double sum = 0.0;
-  for (const FragmentData& fragment : fragmentsOf(harness.output<VoxelFragments>("fragments"))) {
+  for (const FragmentData& fragment : fragmentsOf(pass.out<VoxelFragments>("fragments"))) {
     sum += fragment.coverage();
     CHECK(fragment.emittedRadiance() == glm::vec3(1.0f));
   }
@@ -295,10 +245,10 @@ TEST_CASE(
     "supersampling leaves what is large alone, to the bit, and the coverages of small triangles add up") {
   const Scene large = wall(2);
   CHECK(voxelize(large, "msaa_opacity", 16).fragments ==
-        voxelize(large, "msaa_opacity", 16, Numbers{{"supersampling", 8.0}}).fragments);
+        voxelize(large, "msaa_opacity", 16, {{"supersampling", 8.0}}).fragments);
   // A sphere of triangles much smaller than a voxel. Each adds its area as seen along the axis that it faces
   // most: area * max(|n.x|, |n.y|, |n.z|), over the sphere 4 pi r^2 times the mean of that factor.
-  const Scene fine = sphere(1.0f, 60);
+  const Scene fine = sphere(60);
   double mean = 0.0;
   constexpr int kPoints = 200000;
   for (int i = 0; i < kPoints; ++i) {
@@ -309,8 +259,7 @@ TEST_CASE(
   // 14 voxels over 2 m.
   const double expected = 4.0 * kPi * 49.0 * mean;
   double sum = 0.0;
-  for (const FragmentData& fragment :
-       voxelize(fine, "msaa_opacity", 16, Numbers{{"supersampling", 16.0}}).fragments)
+  for (const FragmentData& fragment : voxelize(fine, "msaa_opacity", 16, {{"supersampling", 16.0}}).fragments)
     sum += fragment.coverage();
   CHECK(sum == Approx(expected).epsilon(0.005));
 }
@@ -320,9 +269,10 @@ TEST_CASE("a thin wall is opaque across, and from the side as thick as asked for
     const char* names[3] = {"opacity_x", "opacity_y", "opacity_z"};
     double side[2] = {0, 0};
     for (const int thick : {0, 1}) {
-      const auto harness = harnessOf(wall(axis), "msaa_opacity", 16, {{"thickness", thick * 0.75}});
+      LonePass pass =
+          voxelizer(wall(axis), "msaa_opacity", {{"resolution", 16}, {"thickness", thick * 0.75}});
       for (int other = 0; other < 3; ++other) {
-        const auto values = harness->output<OccupancyGrid>(names[other]).opacity->downloadFloats();
+        const auto values = pass.out<OccupancyGrid>(names[other]).opacity->downloadFloats();
         const double sum = std::accumulate(values.begin(), values.end(), 0.0);
         INFO("wall across " << axis << " seen along " << other << ", thick " << thick);
         if (other == axis) {
@@ -332,100 +282,12 @@ TEST_CASE("a thin wall is opaque across, and from the side as thick as asked for
           side[thick] += sum;
         }
       }
-      const auto most = harness->output<OccupancyGrid>("opacity").opacity->downloadFloats();
+      const auto most = pass.out<OccupancyGrid>("opacity").opacity->downloadFloats();
       CHECK(std::accumulate(most.begin(), most.end(), 0.0) == 14.0 * 14.0);
     }
     // Half of either side, in steps of 1/255.
     CHECK(side[0] == Approx(14.0 * 14.0).epsilon(1.5 / 255));
     CHECK(side[1] > side[0]);
     CHECK(side[1] <= 2.0 * 14.0 * 14.0);
-  }
-}
-
-TEST_CASE("attributes of all views are those of the material") {
-  SceneBuilder builder;
-  Material material;
-  material.diffuse = {0.25f, 0.5f, 0.75f};
-  material.emission = glm::vec3(2.0f);
-  builder.box({-1, -1, -1}, {1, 1, 1}, builder.material(material), false);
-  for (const std::string& pass : kVoxelizers) {
-    INFO(pass);
-    const Voxels voxels = voxelize(builder.scene, pass, 12);
-    REQUIRE(voxels.fragments.size() > 100);
-    for (const FragmentData& fragment : voxels.fragments) {
-      CHECK(fragment.albedo() == glm::vec3(0.25f, 0.5f, 0.75f));
-      CHECK(fragment.emittedRadiance() == glm::vec3(2.0f));
-      const glm::vec3 normal = glm::abs(fragment.unitNormal());
-      CHECK(std::max({normal.x, normal.y, normal.z}) == Approx(1.0f));
-    }
-  }
-}
-
-TEST_CASE("a mask's holes leave no fragments and a texture gives its colour to all views") {
-  SceneBuilder builder;
-  Material material;
-  material.diffuse = glm::vec3(1.0f);
-  material.diffuseTexture = 0;
-  material.maskTexture = 1;
-  builder.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, builder.material(material));
-  // The left half is a hole, the right half is there; green everywhere.
-  SurfaceTexture green{"green", 2, 1, false, {0, 0.5f, 0, 0, 0.5f, 0}};
-  SurfaceTexture mask{"mask", 64, 1, true, std::vector<float>(64, 0.0f)};
-  std::fill(mask.values.begin() + 32, mask.values.end(), 1.0f);
-  builder.scene.textures = {green, mask};
-  for (const std::string& pass : {std::string("slicing"), std::string("depth_peeling"),
-                                  std::string("msaa_opacity"), std::string("conservative")}) {
-    INFO(pass);
-    const Voxels voxels = voxelize(builder.scene, pass, 18);
-    std::size_t left = 0, right = 0;
-    for (const Cell& cell : voxels.occupied) {
-      // Away from the border: a mip of four texels reaches a voxel far.
-      left += cell[0] >= 4 && cell[0] < 7;
-      right += cell[0] >= 10 && cell[0] < 16;
-    }
-    CHECK(left == 0);
-    CHECK(right == 6u * 16u);
-    for (const FragmentData& fragment : voxels.fragments) CHECK(fragment.albedo() == glm::vec3(0, 0.5f, 0));
-  }
-}
-
-TEST_CASE("voxelizers that look along axes give the same fragments every time and with everything kept") {
-  Scene scene = litRoom(8, 8);
-  SceneBuilder builder;
-  builder.scene = scene;
-  builder.quad({0.1f, 0.3f, 0.7f}, {0.2f, 0, 0}, {0, 0.2f, 0.1f}, builder.lambert(0.5f)).motion =
-      RigidMotion{{0, 1, 0}, 1.0, {0.2, 0.3, 0.7}, {0, 0, 0}};
-  for (const std::string& pass : kVoxelizers) {
-    INFO(pass);
-    const Pipeline text = Pipeline::parse(
-        "pipeline \"views\" {\n  pass voxels voxelization." + pass + " { resolution 16 }\n}\n",
-        "made_by_a_test.pipeline");
-    std::vector<Voxels> runs;
-    for (const int kind : {0, 1, 2}) {
-      RenderOptions options;
-      options.keepEverything = kind == 2;
-      PipelineExecutor executor(device(), techniques(), builder.scene, text, options);
-      executor.keepOutput("voxels", "fragments");
-      // Kind 1 comes from another time: static geometry is kept.
-      if (kind == 1) executor.render(0.7);
-      executor.render(0.2, 1);
-      runs.push_back(
-          voxelsOf(static_cast<const Out<VoxelFragments>*>(executor.output("voxels", "fragments"))->value()));
-    }
-    CHECK(runs[0].fragments == runs[1].fragments);
-    CHECK(runs[0].fragments == runs[2].fragments);
-    CHECK(runs[0].fragments.size() > 100);
-  }
-}
-
-TEST_CASE("empty scenes, points and one voxel are no special cases for views") {
-  SceneBuilder empty, degenerate;
-  degenerate.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, degenerate.lambert(0.5f));
-  for (glm::vec3& normal : degenerate.scene.normals) normal = {0, 1, 0};
-  for (const std::string& pass : kVoxelizers) {
-    INFO(pass);
-    CHECK(voxelize(empty.scene, pass, 16).fragments.empty());
-    CHECK(voxelize(degenerate.scene, pass, 16).fragments.empty());
-    CHECK(voxelize(wall(2), pass, 1).occupied.size() == 1);
   }
 }
