@@ -2,15 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "../../techniques/implicit_visibility/links/direction_bins.h"
 #include "../../techniques/implicit_visibility/links/element_light.h"
 #include "../../techniques/implicit_visibility/links/element_links.h"
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
@@ -34,9 +33,11 @@ class LitElements {
     executor_->keepOutput("illuminate", "light");
     frame = executor_->render(0.0);
   }
-  const SurfaceElements& elements() const { return made<SurfaceElements>("elements", "elements"); }
-  const ElementLinks& links() const { return made<ElementLinks>("links", "links"); }
-  const ElementLight& light() const { return made<ElementLight>("illuminate", "light"); }
+  const SurfaceElements& elements() const {
+    return kept<SurfaceElements>(*executor_, "elements", "elements");
+  }
+  const ElementLinks& links() const { return kept<ElementLinks>(*executor_, "links", "links"); }
+  const ElementLight& light() const { return kept<ElementLight>(*executor_, "illuminate", "light"); }
 
   /// Red of a texture with two texels a leaf.
   static double leafValue(const std::vector<float>& floats, std::size_t leaf, int side) {
@@ -52,10 +53,11 @@ class LitElements {
       result.push_back(leafValue(floats, static_cast<std::size_t>(leaf), 0));
     return result;
   }
-  /// Mean by area over the leaves.
-  double mean(const std::vector<double>& ofLeaves) const {
+  /// Mean by area over the leaves, of all objects or of one.
+  double mean(const std::vector<double>& ofLeaves, std::optional<std::uint32_t> object = {}) const {
     double sum = 0.0, area = 0.0;
     for (std::size_t leaf = 0; leaf < ofLeaves.size(); ++leaf) {
+      if (object && elements().tree->objectOfNode[leaf] != *object) continue;
       sum += ofLeaves[leaf] * elements().state->area[leaf];
       area += elements().state->area[leaf];
     }
@@ -74,10 +76,6 @@ class LitElements {
     REQUIRE(at != std::string::npos);
     text.replace(at, range.size(), "param bounces 1 in 1..4096");
     return Pipeline::parse(text, committed.file);
-  }
-  template <class Port>
-  const Port& made(const char* pass, const char* port) const {
-    return static_cast<const Out<Port>*>(executor_->output(pass, port))->value();
   }
   std::unique_ptr<PipelineExecutor> executor_;
 };

@@ -7,23 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "lumivox/scene/medium.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
 inline constexpr int kPixels = 64;  ///< along both sides of the images here
 
 inline gpu::TextureRef image(const std::vector<glm::vec4>& values) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = kPixels;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test image");
   std::vector<float> floats;
   for (const glm::vec4& value : values) floats.insert(floats.end(), {value.x, value.y, value.z, value.w});
-  texture->uploadFloats(0, floats);
-  return texture;
+  return textureOf(pixels(kPixels, kPixels), floats);
 }
 
 /// A g-buffer in which pixel i sees a surface at place(i), in metres.
@@ -61,48 +55,48 @@ inline ScatteringGrid varyingMedium(float extinction, float albedo, float anisot
                                      low - 0.5f * voxelSize, low + voxelSize * (glm::vec3(size) + 0.5f));
   ScatteringGrid::Medium& medium = result.media.front();
   medium.grid = {low, voxelSize, size};
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = gpu::Format::r32f;
-  description.width = size.x;
-  description.height = size.y;
-  description.depth = size.z;
-  medium.density = std::make_shared<gpu::Texture>(device(), description, "test density");
   std::vector<float> values;
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x)
         values.push_back(densityAt(low + voxelSize * (glm::vec3(x, y, z) + 0.5f)));
-  medium.density->uploadFloats(0, values);
+  medium.density = textureOf(volumeOf(size, gpu::Format::r32f), values);
   return result;
+}
+
+/// Smoke of three thousand particles.
+inline Medium smokeFrom(const glm::dvec3& source) {
+  Medium medium;
+  medium.name = "smoke";
+  medium.extinction = glm::vec3(2.0f);
+  medium.albedo = glm::vec3(0.8f);
+  medium.particles = 3000;
+  medium.source = source;
+  medium.spread = 0.2;
+  medium.radius = 0.15;
+  medium.rise = 0.4;
+  medium.drift = 0.08;
+  medium.life = 3.0;
+  return medium;
 }
 
 struct Marched {
   ImageBuffer scattered, transmittance;
 };
-using Settings = std::vector<std::pair<std::string, std::string>>;
-
-/// Full resolution, steps looked at in their middle.
+/// Of `march` or `march_as_published` at full resolution.
+inline Marched marchBy(const std::string& pass, const Scene& scene, const ScatteringGrid& media,
+                       const GBuffer& gbuffer, const Settings& settings) {
+  LonePass march("volumetric_smoke." + pass, scene, {{"resolution", "full"}});
+  march.with(settings).in("gbuffer", gbuffer).in("media", media);
+  if (!scene.lights.empty()) march.in("shadow", shadowsOf(scene));
+  return {march.image("scattered"), march.image("transmittance")};
+}
+/// Steps looked at in their middle.
 inline Marched march(const Scene& scene, const ScatteringGrid& media, const GBuffer& gbuffer, int steps,
-                     const Settings& words = {},
-                     const std::vector<std::pair<std::string, int>>& numbers = {}) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  PassHarness harness(device(), techniques(), "volumetric_smoke", "march", scene, snapshot);
-  harness.setParameter("resolution", std::string("full"));
-  harness.setParameter("start", std::string("middle"));
-  harness.setParameter("steps", steps);
-  for (const auto& [name, word] : words) harness.setParameter(name, word);
-  for (const auto& [name, number] : numbers) harness.setParameter(name, number);
-  harness.setInput("gbuffer", gbuffer);
-  harness.setInput("media", media);
-  if (!scene.lights.empty()) {
-    shadow.run();
-    harness.setInput("shadow", shadow.output<ShadowMap>("depth"));
-  }
-  harness.run();
-  return {imageOf(*harness.output<Image>("scattered").texture),
-          imageOf(*harness.output<Image>("transmittance").texture)};
+                     const Settings& more = {}) {
+  Settings settings{{"start", "middle"}, {"steps", steps}};
+  settings.insert(settings.end(), more.begin(), more.end());
+  return marchBy("march", scene, media, gbuffer, settings);
 }
 
 inline float valueOf(const ImageBuffer& image, int pixel, int channel = 0) {

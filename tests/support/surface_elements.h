@@ -1,20 +1,13 @@
 // Elements and links of a scene, pass by pass, as tests of implicit visibility want them.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "../../techniques/implicit_visibility/elements/surface_elements.h"
 #include "../../techniques/implicit_visibility/links/element_light.h"
 #include "../../techniques/implicit_visibility/links/element_links.h"
-#include "lumivox/gpu/device.h"
-#include "lumivox/pipeline/pass.h"
-#include "lumivox/pipeline/pipeline.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
@@ -24,17 +17,8 @@ using implicit_visibility::ElementLight, implicit_visibility::ElementLink, impli
     implicit_visibility::SurfaceElements, implicit_visibility::BinMapping, implicit_visibility::DirectionBins,
     implicit_visibility::BinTable;
 
-/// Parameters of one of the passes.
-using Settings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
-
-inline void apply(PassHarness& harness, const Settings& settings) {
-  for (const auto& [name, value] : settings)
-    std::visit([&, &key = name](const auto& set) { harness.setParameter(key, set); }, value);
-}
-
 /// The three passes, one behind the other.
 struct LinkedScene {
-  std::vector<std::unique_ptr<PassHarness>> harnesses;
   SurfaceElements elements;
   ElementLinks pairs, links;
 
@@ -49,25 +33,15 @@ struct LinkSettings {
 
 inline LinkedScene linked(const Scene& scene, const LinkSettings& settings = {}, double time = 0.0) {
   LinkedScene made;
-  const SceneSnapshot snapshot = snapshotOf(scene, time);
-  const auto pass = [&](const std::string& name, const Settings& own) -> PassHarness& {
-    made.harnesses.push_back(
-        std::make_unique<PassHarness>(device(), techniques(), "implicit_visibility", name, scene, snapshot));
-    apply(*made.harnesses.back(), own);
-    return *made.harnesses.back();
-  };
-  PassHarness& elements = pass("elements", settings.elements);
-  elements.run();
-  made.elements = elements.output<SurfaceElements>("elements");
-  PassHarness& create = pass("create_links", settings.create);
-  create.setInput("elements", made.elements);
-  create.run();
-  made.pairs = create.output<ElementLinks>("links");
-  PassHarness& push = pass("push_links", settings.push);
-  push.setInput("elements", made.elements);
-  push.setInput("links", made.pairs);
-  push.run();
-  made.links = push.output<ElementLinks>("links");
+  made.elements = LonePass("implicit_visibility.elements", scene, settings.elements, time)
+                      .out<SurfaceElements>("elements");
+  made.pairs = LonePass("implicit_visibility.create_links", scene, settings.create, time)
+                   .in("elements", made.elements)
+                   .out<ElementLinks>("links");
+  made.links = LonePass("implicit_visibility.push_links", scene, settings.push, time)
+                   .in("elements", made.elements)
+                   .in("links", made.pairs)
+                   .out<ElementLinks>("links");
   return made;
 }
 

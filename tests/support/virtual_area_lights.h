@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "../../techniques/virtual_area_lights/points/surface_points_port.h"
 #include "../../techniques/virtual_area_lights/sparse_light.h"
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 namespace lumivox::test {
 
@@ -37,22 +33,21 @@ struct DiscLight {
   glm::vec3 exitance{1.0f};
 };
 
-inline gpu::TextureRef texels(const std::vector<glm::vec4>& values, glm::ivec2 size, const char* label) {
-  auto texture = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{.format = gpu::Format::rgba32f, .width = size.x, .height = size.y},
-      label);
-  std::vector<glm::vec4> all = values;
-  all.resize(static_cast<std::size_t>(size.x * size.y), glm::vec4(0.0f));
-  texture->upload(0, std::as_bytes(std::span(all)));
+/// One for each of the first points.
+inline gpu::TextureRef texels(std::vector<glm::vec4> values) {
+  const glm::ivec2 size = SurfacePoints::sizeFor(static_cast<int>(values.size()));
+  values.resize(static_cast<std::size_t>(size.x * size.y), glm::vec4(0.0f));
+  gpu::TextureRef texture = filled(pixels(size.x, size.y), glm::vec4(0.0f));
+  texture->upload(0, std::as_bytes(std::span(values)));
   return texture;
 }
 
-template <class T>
-gpu::BufferRef bufferOf(const std::vector<T>& values, const char* label) {
-  auto buffer =
-      std::make_shared<gpu::Buffer>(device(), std::max(values.size(), std::size_t{1}) * sizeof(T), label);
-  if (!values.empty()) buffer->uploadValues(std::span<const T>(values));
-  return buffer;
+/// Light of the diffuse lobe alone, from one place for each point, or from far overhead.
+inline SparseLight diffuseLight(const std::vector<glm::vec4>& lights, const std::vector<glm::vec4>& places) {
+  return {texels(lights), texels(places), nullptr, nullptr};
+}
+inline SparseLight lightOverhead(const std::vector<glm::vec4>& lights) {
+  return diffuseLight(lights, std::vector<glm::vec4>(lights.size(), glm::vec4(0, 1e4, 0, 1)));
 }
 
 /// Every point is a candidate everywhere.
@@ -67,14 +62,13 @@ inline SurfacePoints pointsOf(const std::vector<SparsePoint>& points, float spac
                        1.0f);
     candidates.push_back(static_cast<std::uint32_t>(candidates.size()));
   }
-  const glm::ivec2 size = SurfacePoints::sizeFor(static_cast<int>(points.size()));
   SurfacePoints result;
-  result.position = texels(positions, size, "positions");
-  result.normal = texels(normals, size, "normals");
-  result.radius = texels(radii, size, "radii");
+  result.position = texels(positions);
+  result.normal = texels(normals);
+  result.radius = texels(radii);
   result.grid = {glm::vec3(-1e3f), 2e3f, glm::ivec3(1)};
-  result.cells = bufferOf<std::uint32_t>({0, static_cast<std::uint32_t>(points.size())}, "cells");
-  result.candidates = bufferOf(candidates, "candidates");
+  result.cells = bufferOf<std::uint32_t>({0, static_cast<std::uint32_t>(points.size())});
+  result.candidates = bufferOf(candidates);
   result.count = static_cast<int>(points.size());
   result.neighbours = neighbours;
   result.spacing = spacing;
@@ -89,11 +83,25 @@ inline SurfaceLights lightsOf(const std::vector<DiscLight>& lights) {
     values.emplace_back(light.normal, 0.0f);
     values.emplace_back(light.exitance * light.area, 0.0f);
   }
-  return {bufferOf(values, "lights"), static_cast<int>(lights.size())};
+  return {bufferOf(values), static_cast<int>(lights.size())};
 }
 
-/// Parameters of one pass.
-using PassSettings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
+/// All walls of a cube of side 2 around the origin, n x n lights each, which shine inwards.
+inline std::vector<DiscLight> shiningBox(int n) {
+  std::vector<DiscLight> lights;
+  const float side = 2.0f / static_cast<float>(n);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float sign : {-1.0f, 1.0f})
+      for (int i = 0; i < n * n; ++i) {
+        glm::vec3 position(0.0f), normal(0.0f);
+        position[axis] = sign;
+        normal[axis] = -sign;
+        position[(axis + 1) % 3] = -1.0f + side * (static_cast<float>(i % n) + 0.5f);
+        position[(axis + 2) % 3] = -1.0f + side * (static_cast<float>(i / n) + 0.5f);
+        lights.push_back({position, normal, side * side});
+      }
+  return lights;
+}
 
 /// Runs one pass of the technique over inputs made by hand; the camera looks from (0, 1, 0) at a glossy
 /// floor.
@@ -105,79 +113,63 @@ class SparsePasses {
     builder_.look(eye, {0, 0, 1e-3}, {0, 0, -1}, 0.7, side, side);
   }
 
-  SparseLight gather(const SurfacePoints& points, const SurfaceLights& lights,
-                     const PassSettings& settings = {}, const SurfaceLights* more = nullptr) {
-    PassHarness& pass = add("gather", settings);
-    pass.setInput("points", points);
-    pass.setInput("lights", lights);
-    if (more != nullptr) pass.setInput("more_lights", *more);
-    pass.run();
-    return pass.output<SparseLight>("light");
+  SparseLight gather(const SurfacePoints& points, const SurfaceLights& lights, const Settings& settings = {},
+                     const SurfaceLights* more = nullptr) {
+    LonePass pass = lone("gather", settings);
+    pass.in("points", points).in("lights", lights);
+    if (more != nullptr) pass.in("more_lights", *more);
+    return pass.out<SparseLight>("light");
   }
   SparseLight normalise(const SurfacePoints& points, const SparseLight& light,
-                        const PassSettings& settings = {}) {
+                        const Settings& settings = {}) {
     return over("normalise", points, light, settings);
   }
-  SparseLight occlude(const SurfacePoints& points, const SparseLight& light,
-                      const PassSettings& settings = {}) {
+  SparseLight occlude(const SurfacePoints& points, const SparseLight& light, const Settings& settings = {}) {
     return over("occlude", points, light, settings);
   }
   /// What is reflected by surfaces of albedo 1 at `seen`, one in each pixel from the upper left on.
   std::pair<ImageBuffer, ImageBuffer> apply(const SurfacePoints& points, const SparseLight& light,
                                             const std::vector<SparsePoint>& seen,
-                                            const PassSettings& settings = {}) {
-    PassHarness& pass = add("apply", settings);
-    pass.setInput("gbuffer", gbuffer(seen));
-    pass.setInput("points", points);
-    pass.setInput("light", light);
-    pass.run();
-    return {imageOf(*pass.output<Image>("diffuse").texture), imageOf(*pass.output<Image>("glossy").texture)};
+                                            const Settings& settings = {}) {
+    LonePass pass = lone("apply", settings);
+    pass.in("gbuffer", gbuffer(seen)).in("points", points).in("light", light);
+    return {pass.image("diffuse"), pass.image("glossy")};
   }
   std::pair<ImageBuffer, ImageBuffer> bruteForce(const SurfaceLights& lights,
                                                  const std::vector<SparsePoint>& seen) {
-    PassHarness& pass = add("brute_force", {});
-    pass.setInput("gbuffer", gbuffer(seen));
-    pass.setInput("lights", lights);
-    pass.run();
-    return {imageOf(*pass.output<Image>("diffuse").texture), imageOf(*pass.output<Image>("glossy").texture)};
+    LonePass pass = lone("brute_force", {});
+    pass.in("gbuffer", gbuffer(seen)).in("lights", lights);
+    return {pass.image("diffuse"), pass.image("glossy")};
   }
   const Scene& scene() const { return builder_.scene; }
 
  private:
-  PassHarness& add(const std::string& name, const PassSettings& settings) {
-    harnesses_.push_back(std::make_unique<PassHarness>(device(), techniques(), "virtual_area_lights", name,
-                                                       builder_.scene, snapshotOf(builder_.scene, 0.0)));
-    for (const auto& [parameter, value] : settings)
-      std::visit([&, &key = parameter](const auto& set) { harnesses_.back()->setParameter(key, set); },
-                 value);
-    return *harnesses_.back();
+  LonePass lone(const std::string& name, const Settings& settings) const {
+    return {"virtual_area_lights." + name, builder_.scene, settings};
   }
   SparseLight over(const std::string& name, const SurfacePoints& points, const SparseLight& light,
-                   const PassSettings& settings) {
-    PassHarness& pass = add(name, settings);
-    pass.setInput("points", points);
-    pass.setInput("light", light);
-    pass.run();
-    return pass.output<SparseLight>("light");
+                   const Settings& settings) {
+    return lone(name, settings).in("points", points).in("light", light).out<SparseLight>("light");
   }
   GBuffer gbuffer(const std::vector<SparsePoint>& seen) const {
     const Camera& camera = builder_.scene.cameras.front();
-    const glm::ivec2 size(camera.width, camera.height);
-    std::vector<glm::vec4> position, normal, geometric, diffuse, specular;
-    for (const SparsePoint& point : seen) {
-      position.emplace_back(point.position, 1.0f);
-      normal.emplace_back(point.normal, 1.0f);
-      geometric.emplace_back(point.normal, static_cast<float>(point.model));
-      diffuse.emplace_back(1.0f);
-      specular.push_back(point.exponent >= 0.0f ? glm::vec4(1, 1, 1, point.exponent) : glm::vec4(0.0f));
-    }
-    return {texels(position, size, "position"),          texels(normal, size, "normal"),
-            texels(geometric, size, "geometric normal"), texels(diffuse, size, "diffuse"),
-            texels(specular, size, "specular"),          nullptr};
+    const auto at = [&](int x, int y) {
+      const auto i = static_cast<std::size_t>(y * camera.width + x);
+      return i < seen.size() ? seen[i] : SparsePoint{};
+    };
+    GBuffer result = gbufferWhere({camera.width, camera.height}, [&](int x, int y) {
+      const SparsePoint point = at(x, y);
+      return SeenSurface{point.position, point.normal, glm::vec3(1.0f),
+                         point.exponent >= 0.0f ? glm::vec4(1, 1, 1, point.exponent) : glm::vec4(0.0f),
+                         static_cast<std::size_t>(y * camera.width + x) < seen.size()};
+    });
+    result.geometricNormal = pixelsWhere({camera.width, camera.height}, [&](int x, int y) {
+      return glm::vec4(at(x, y).normal, static_cast<float>(at(x, y).model));
+    });
+    return result;
   }
 
   SceneBuilder builder_;
-  std::vector<std::unique_ptr<PassHarness>> harnesses_;
 };
 
 /// The texels of the first points.

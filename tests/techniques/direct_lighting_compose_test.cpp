@@ -16,16 +16,11 @@ const std::array<glm::vec3, 5> kValues{glm::vec3(1.0f, 2.0f, 3.0f), glm::vec3(0.
                                        glm::vec3(16.0f, 32.0f, 0.0625f)};
 
 ImageBuffer composed(const std::array<bool, 5>& given) {
-  const Scene scene = emptyScene();
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness compose(device(), techniques(), "direct_lighting", "compose", scene, snapshot);
-  for (std::size_t i = 0; i < kInputs.size(); ++i) {
+  LonePass compose("direct_lighting.compose", emptyScene());
+  for (std::size_t i = 0; i < kInputs.size(); ++i)
     if (given[i])
-      compose.setInput(kInputs[i],
-                       Image{image(std::vector<glm::vec4>(kPixels * kPixels, glm::vec4(kValues[i], 1.0f)))});
-  }
-  compose.run();
-  return imageOf(*compose.output<Image>("radiance").texture, 4);
+      compose.in(kInputs[i], Image{filled(pixels(kPixels, kPixels), glm::vec4(kValues[i], 1.0f))});
+  return compose.image("radiance", 4);
 }
 
 }  // namespace

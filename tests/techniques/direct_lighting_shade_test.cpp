@@ -14,17 +14,11 @@ glm::vec3 floorPlace(int pixel) {
 }
 
 GBuffer floorSeen() {
-  GBuffer result;
-  std::vector<glm::vec4> places, normals, albedos;
-  for (int i = 0; i < kPixels * kPixels; ++i) {
-    places.emplace_back(floorPlace(i), i == 0 ? 0.0f : 1.0f);
-    normals.emplace_back(0.0f, 1.0f, 0.0f, 1.0f);
-    albedos.emplace_back(0.5f);
-  }
-  result.position = image(places);
-  result.normal = result.geometricNormal = image(normals);
-  result.diffuse = image(albedos);
-  return result;
+  return gbufferWhere({kPixels, kPixels}, [](int x, int y) {
+    const int pixel = y * kPixels + x;
+    return SeenSurface{
+        .position = floorPlace(pixel), .diffuse = glm::vec3(0.5f), .specular = {}, .hit = pixel != 0};
+  });
 }
 
 /// Light from above, pi W/m^2, whose one shadow view holds |x| < 0.5, |z| < 0.5 and is shadowed everywhere.
@@ -39,14 +33,9 @@ ShadowMap darkSquare() {
   view[3] = {0, 0, 0.5f, 1};
   ShadowMap result;
   result.lightCount = result.layerCount = 1;
-  result.lights = std::make_shared<gpu::Buffer>(device(), sizeof(light), "light");
-  result.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
-  result.views = std::make_shared<gpu::Buffer>(device(), sizeof(view), "view");
-  result.views->uploadValues(std::span<const glm::mat4>(&view, 1));
-  result.depth = std::make_shared<gpu::Texture>(
-      device(), gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::depth32f, 4, 4, 1, 1},
-      "depth");
-  result.depth->clear(glm::vec4(0.0f));
+  result.lights = bufferOf<LightSampleData>({light});
+  result.views = bufferOf<glm::mat4>({view});
+  result.depth = filled({gpu::TextureKind::d2Array, gpu::Format::depth32f, 4, 4, 1, 1}, glm::vec4(0.0f));
   return result;
 }
 
@@ -56,11 +45,10 @@ TEST_CASE(
     "what lies outside of a shadow view on any side is lit, and a pixel without a surface shows what is around") {
   Scene scene = emptyScene();
   scene.environment = {1.0f, 2.0f, 3.0f};
-  PassHarness shade(device(), techniques(), "direct_lighting", "shade", scene, snapshotOf(scene, 0.0));
-  shade.setInput("gbuffer", floorSeen());
-  shade.setInput("shadow", darkSquare());
-  shade.run();
-  const ImageBuffer image = imageOf(*shade.output<Image>("radiance").texture, 4);
+  const ImageBuffer image = LonePass("direct_lighting.shade", scene)
+                                .in("gbuffer", floorSeen())
+                                .in("shadow", darkSquare())
+                                .image("radiance", 4);
   for (int i = 1; i < kPixels * kPixels; ++i) {
     const glm::vec3 place = floorPlace(i);
     const bool dark = std::abs(place.x) < 0.5f && std::abs(place.z) < 0.5f;
@@ -75,8 +63,7 @@ TEST_CASE(
     "shading that leaves out emissive surfaces as lights keeps all other lights, and what shines is still seen") {
   Scene scene = emptyScene();
   scene.lights.emplace_back();  // the sun below: lights without extent come first
-  PassHarness shade(device(), techniques(), "direct_lighting", "shade", scene, snapshotOf(scene, 0.0));
-  shade.setInput("gbuffer", floorSeen());
+  LonePass shade("direct_lighting.shade", scene);
   ShadowMap lights = darkSquare();
   LightSampleData sun{};
   sun.direction = {0, -1, 0};
@@ -89,13 +76,10 @@ TEST_CASE(
   patch.power = glm::vec3(1.0f);
   patch.firstView = -1;
   lights.lightCount = 2;
-  lights.lights = std::make_shared<gpu::Buffer>(device(), 2 * sizeof(sun), "lights");
-  lights.lights->uploadValues(std::span<const LightSampleData>(std::array{sun, patch}));
-  shade.setInput("shadow", lights);
+  lights.lights = bufferOf<LightSampleData>({sun, patch});
+  shade.in("gbuffer", floorSeen()).in("shadow", lights);
   const auto radianceAt = [&](int pixel, const char* areaLights) {
-    shade.setParameter("area_lights", std::string(areaLights));
-    shade.run();
-    return valueOf(imageOf(*shade.output<Image>("radiance").texture, 4), pixel);
+    return valueOf(shade.with({{"area_lights", areaLights}}).image("radiance", 4), pixel);
   };
   const int middle = kPixels / 2 * kPixels + kPixels / 2;
   CHECK(radianceAt(middle, "off") == Approx(0.5).epsilon(1e-4));

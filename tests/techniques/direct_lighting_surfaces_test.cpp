@@ -2,9 +2,7 @@
 // masks.
 #include <glm/gtc/constants.hpp>
 
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -189,11 +187,7 @@ TEST_CASE("a g-buffer tells of each pixel what moves together, 0 where it stands
     tile.motion = RigidMotion{};
     tile.motion->angularSpeed = i == 1 ? 2.0 : 1.0;  // the first and the last turn together
   }
-  PassHarness harness(device(), techniques(), "direct_lighting", "gbuffer", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  harness.run();
-  const GBuffer gbuffer = harness.output<GBuffer>("gbuffer");
-  const std::vector<float> normals = gbuffer.geometricNormal->downloadFloats(0);
+  const std::vector<float> normals = gbufferOf(builder.scene).geometricNormal->downloadFloats(0);
   const auto modelAt = [&](double x, double z) {
     const auto pixel = [](double at) { return static_cast<std::size_t>((0.5 + 0.5 * at) * kSide); };
     return normals[4 * (pixel(z) * kSide + pixel(x)) + 3];

@@ -1,6 +1,6 @@
 #include <glm/gtc/constants.hpp>
 
-#include "support/scene_builder.h"
+#include "support/form_factors.h"
 #include "support/techniques.h"
 
 using namespace lumivox;
@@ -25,20 +25,6 @@ ImageBuffer direct(const Scene& scene, RenderOptions options = {}) {
 glm::vec3 floorPoint(int x, int y, int pixels) {
   return {2.0f * (static_cast<float>(x) + 0.5f) / static_cast<float>(pixels) - 1.0f, 0.0f,
           2.0f * (static_cast<float>(y) + 0.5f) / static_cast<float>(pixels) - 1.0f};
-}
-
-/// Irradiance of a polygon of unit radiance (Lambert 1760): 1/2 sum over edges of angle times the projection
-/// of the edge's normal. Precondition: the polygon lies above the horizon.
-double polygonIrradiance(const std::vector<glm::dvec3>& polygon, const glm::dvec3& point,
-                         const glm::dvec3& normal) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(polygon[i] - point),
-                     b = glm::normalize(polygon[(i + 1) % polygon.size()] - point);
-    sum +=
-        std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
-  }
-  return std::abs(0.5 * sum);
 }
 
 }  // namespace
@@ -124,8 +110,7 @@ TEST_CASE("point samples of a quad light reach Lambert's polygon irradiance with
   const std::vector<glm::dvec3> areaLight{
       {-0.25, 1, -0.25}, {0.25, 1, -0.25}, {0.25, 1, 0.25}, {-0.25, 1, 0.25}};
   for (const glm::ivec2 pixel : {glm::ivec2(8, 8), glm::ivec2(2, 3), glm::ivec2(13, 8)}) {
-    const double expected =
-        2.0 / glm::pi<double>() * polygonIrradiance(areaLight, floorPoint(pixel.x, pixel.y, 16), {0, 1, 0});
+    const double expected = 2.0 * polygonFormFactor(floorPoint(pixel.x, pixel.y, 16), {0, 1, 0}, areaLight);
     CHECK_THAT(image.at(pixel.x, pixel.y, 0), WithinRel(static_cast<float>(expected), 0.02f));
   }
 }
@@ -159,20 +144,6 @@ TEST_CASE("a surface in the shadow of a blocker receives nothing and its surroun
   CHECK(image.at(35, 32, 0) == 0.0f);
   CHECK(image.at(50, 32, 0) > 0.1f);
   CHECK(image.at(35, 8, 0) > 0.1f);
-}
-
-TEST_CASE("the Phong lobe has (n + 2) / (2 pi) times its albedo in the mirror direction") {
-  SceneBuilder builder;
-  Material shiny;
-  shiny.specular = glm::vec3(0.5f);
-  shiny.exponent = 20.0f;
-  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(shiny));
-  builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.01, 9, 9);
-  builder.light(LightKind::directional, {2, 2, 2}, {}, {0, -1, 0});
-  // Eye and light both straight above the middle pixel: the mirror direction is the direction to the light,
-  // the cosine is 1.
-  const float expected = 0.5f * 22.0f / (2.0f * glm::pi<float>()) * 2.0f;
-  CHECK_THAT(direct(builder.scene).at(4, 4, 0), WithinRel(expected, 1e-3f));
 }
 
 TEST_CASE("a scene without lights or emission is black, and its shadow pass is left out") {

@@ -4,40 +4,19 @@
 #include <random>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/facts.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
-using Catch::Matchers::Contains;
 
 namespace {
 
 constexpr int kSize = 21;  // pixels along both sides: no multiple of 2 or 4
 constexpr double kFov = 0.8;
 
-struct Surface {
-  glm::vec3 position{0.0f}, normal{0.0f, 0.0f, 1.0f};
-  float albedo = 1.0f;
-  bool hit = true;
-};
-using Surfaces = std::function<Surface(int, int)>;
+using Surfaces = std::function<SeenSurface(int, int)>;
 using Values = std::function<float(int, int)>;
-
-gpu::TextureRef textureOf(int width, int height, const std::function<glm::vec4(int, int)>& value) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = width;
-  description.height = height;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test image");
-  std::vector<float> texels;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (int c = 0; c < 4; ++c) texels.push_back(value(x, y)[c]);
-  texture->uploadFloats(0, texels);
-  return texture;
-}
 
 /// The point of a plane z = -depth that a pixel sees from the origin.
 glm::vec3 onPlane(int x, int y, float depth, int size = kSize) {
@@ -46,11 +25,11 @@ glm::vec3 onPlane(int x, int y, float depth, int size = kSize) {
               up = 1.0f - (static_cast<float>(y) + 0.5f) / static_cast<float>(size) * 2.0f;
   return {half * right * depth, half * up * depth, -depth};
 }
-Surface facing(int x, int y) {
-  return {onPlane(x, y, 2.0f)};
+SeenSurface facing(int x, int y, float depth = 2.0f) {
+  return {onPlane(x, y, depth), {0, 0, 1}};
 }
 
-struct Settings {
+struct Smoothing {
   int every = 1;  // pixels from one sample to the next
   const char* kernel = "tent";
   int radius = 0;
@@ -59,49 +38,38 @@ struct Settings {
   int samplesAcross = 0;  // 0: as many as belong to `every`
 };
 
-ImageBuffer smoothed(const Surfaces& surfaces, const Values& values, const Settings& settings) {
+ImageBuffer smoothed(const Surfaces& surfaces, const Values& values, const Smoothing& settings) {
   const int size = settings.size, every = settings.every;
   SceneBuilder builder;
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, kFov, size, size);
-  const Scene& scene = builder.scene;
-  GBuffer gbuffer;
-  gbuffer.position = textureOf(size, size, [&](int x, int y) {
-    const Surface surface = surfaces(x, y);
-    return glm::vec4(surface.position, surface.hit ? 1.0f : 0.0f);
-  });
-  gbuffer.normal = gbuffer.geometricNormal =
-      textureOf(size, size, [&](int x, int y) { return glm::vec4(surfaces(x, y).normal, 1.0f); });
-  gbuffer.diffuse =
-      textureOf(size, size, [&](int x, int y) { return glm::vec4(glm::vec3(surfaces(x, y).albedo), 1.0f); });
   const int across = settings.samplesAcross > 0 ? settings.samplesAcross : (size + every - 1) / every;
-  PassHarness harness(device(), techniques(), "image_filters", "smooth", scene, snapshotOf(scene, 0.0));
-  harness.setParameter("kernel", std::string(settings.kernel));
-  harness.setParameter("radius", settings.radius);
-  harness.setInput("gbuffer", gbuffer);
-  harness.setInput(settings.what, Image{textureOf(across, across, [&](int x, int y) {
-                     const auto pixel = [&](int i) { return std::min(every * i + every / 2, size - 1); };
-                     return glm::vec4(glm::vec3(values(pixel(x), pixel(y))), 1.0f);
-                   })});
-  harness.run();
-  return imageOf(*harness.output<Image>(settings.what).texture);
+  const auto pixel = [&](int i) { return std::min(every * i + every / 2, size - 1); };
+  return LonePass("image_filters.smooth", builder.scene,
+                  {{"kernel", settings.kernel}, {"radius", settings.radius}})
+      .in("gbuffer", gbufferWhere({size, size}, surfaces))
+      .in(settings.what, Image{pixelsWhere({across, across},
+                                           [&](int x, int y) {
+                                             return glm::vec4(glm::vec3(values(pixel(x), pixel(y))), 1.0f);
+                                           })})
+      .image(settings.what);
 }
 
-const Settings kAll[] = {{1, "tent", 0},     {1, "tent", 3},  {2, "tent"},     {4, "tent"},
-                         {1, "gaussian", 3}, {2, "gaussian"}, {4, "gaussian"}, {1, "bilinear", 2},
-                         {2, "bilinear"},    {4, "bilinear"}, {4, "tent", 16}, {2, "gaussian", 9}};
+const Smoothing kAll[] = {{1, "tent", 0},     {1, "tent", 3},  {2, "tent"},     {4, "tent"},
+                          {1, "gaussian", 3}, {2, "gaussian"}, {4, "gaussian"}, {1, "bilinear", 2},
+                          {2, "bilinear"},    {4, "bilinear"}, {4, "tent", 16}, {2, "gaussian", 9}};
 
 }  // namespace
 
 TEST_CASE("a constant comes back, from all pixels, half and a quarter of them, by every kernel") {
-  for (Settings settings : kAll)
+  for (Smoothing settings : kAll)
     for (const char* what : {"diffuse", "glossy", "occlusion"})
       for (const int size : {kSize, 1, 16}) {
         settings.what = what;
         settings.size = size;
         const ImageBuffer image = smoothed(
             [&](int x, int y) {
-              return Surface{onPlane(x, y, 1.0f + 0.2f * static_cast<float>((3 * x + y) % 7), size),
-                             glm::normalize(glm::vec3(0.1f * static_cast<float>(x % 5), 0.2f, 1.0f))};
+              return SeenSurface{onPlane(x, y, 1.0f + 0.2f * static_cast<float>((3 * x + y) % 7), size),
+                                 glm::normalize(glm::vec3(0.1f * static_cast<float>(x % 5), 0.2f, 1.0f))};
             },
             [](int, int) { return 0.7f; }, settings);
         CAPTURE(settings.every, settings.kernel, settings.radius, what, size);
@@ -119,12 +87,12 @@ TEST_CASE("smoothing none multiplies arriving light by the albedo, to the bit, a
     return [&of](int x, int y) { return of[static_cast<std::size_t>(y * kSize + x)]; };
   };
   const Surfaces surfaces = [&](int x, int y) {
-    Surface surface = facing(x, y);
-    surface.albedo = at(albedo)(x, y);
+    SeenSurface surface = facing(x, y);
+    surface.diffuse = glm::vec3(at(albedo)(x, y));
     return surface;
   };
   for (const char* what : {"diffuse", "glossy", "occlusion"}) {
-    Settings settings;
+    Smoothing settings;
     settings.what = what;
     const ImageBuffer image = smoothed(surfaces, at(light), settings);
     for (int y = 0; y < kSize; ++y)
@@ -138,8 +106,8 @@ TEST_CASE("smoothing none multiplies arriving light by the albedo, to the bit, a
 TEST_CASE("textures stay as sharp as they are where one of sixteen pixels has a sample") {
   const ImageBuffer image = smoothed(
       [](int x, int y) {
-        Surface surface = facing(x, y);
-        surface.albedo = (x + y) % 2 == 0 ? 0.9f : 0.1f;
+        SeenSurface surface = facing(x, y);
+        surface.diffuse = glm::vec3((x + y) % 2 == 0 ? 0.9f : 0.1f);
         return surface;
       },
       [](int, int) { return 2.0f; }, {4});
@@ -152,10 +120,10 @@ TEST_CASE("light that grows linearly across a plane comes back by tents, whose s
   const Values ramp = [](int x, int y) {
     return 1.0f + 0.1f * static_cast<float>(x) + 0.03f * static_cast<float>(y);
   };
-  for (const Settings& settings : kAll) {
+  for (const Smoothing& settings : kAll) {
     if (settings.kernel == std::string("gaussian") && settings.every > 1)
       continue;  // four of a Gaussian are uneven
-    const ImageBuffer image = smoothed(facing, ramp, settings);
+    const ImageBuffer image = smoothed([](int x, int y) { return facing(x, y); }, ramp, settings);
     CAPTURE(settings.every, settings.kernel, settings.radius);
     const int border = 2 * settings.every + settings.radius;
     for (int y = border; y < 20 - border; ++y)
@@ -165,9 +133,9 @@ TEST_CASE("light that grows linearly across a plane comes back by tents, whose s
 
 TEST_CASE("planes a metre apart in depth that meet in the picture do not mix, but bilinearly") {
   constexpr int kEdge = 10;  // the first pixel of the farther plane
-  const Surfaces steps = [](int x, int y) { return Surface{onPlane(x, y, x < kEdge ? 1.0f : 2.0f)}; };
+  const Surfaces steps = [](int x, int y) { return facing(x, y, x < kEdge ? 1.0f : 2.0f); };
   const Values values = [](int x, int) { return x < kEdge ? 1.0f : 0.0f; };
-  for (const Settings& settings : kAll) {
+  for (const Smoothing& settings : kAll) {
     const ImageBuffer image = smoothed(steps, values, settings);
     CAPTURE(settings.every, settings.kernel, settings.radius);
     double most = 0.0;
@@ -189,11 +157,11 @@ TEST_CASE(
     const float side = x < kEdge ? -1.0f : 1.0f;
     const glm::vec3 normal = glm::normalize(glm::vec3(side, 0, 1)), edge = onPlane(kEdge, kEdge, 2.0f),
                     direction = onPlane(x, y, 1.0f);
-    return Surface{direction * (glm::dot(edge, normal) / glm::dot(direction, normal)), normal};
+    return SeenSurface{direction * (glm::dot(edge, normal) / glm::dot(direction, normal)), normal};
   };
   const Values values = [](int x, int) { return x < kEdge ? 1.0f : 0.0f; };
-  for (const Settings& settings :
-       {Settings{1, "tent", 3}, Settings{1, "gaussian", 3}, Settings{2, "tent"}, Settings{2, "gaussian"}}) {
+  for (const Smoothing& settings : {Smoothing{1, "tent", 3}, Smoothing{1, "gaussian", 3},
+                                    Smoothing{2, "tent"}, Smoothing{2, "gaussian"}}) {
     const ImageBuffer image = smoothed(corner, values, settings);
     CAPTURE(settings.every, settings.kernel, settings.radius);
     for (int y = 0; y < kSize; ++y)
@@ -204,8 +172,7 @@ TEST_CASE(
 TEST_CASE("a pixel that is like none of the samples takes the most alike one's light") {
   // A card before a wall behind which is another wall; samples lie on the walls alone.
   const Surfaces surfaces = [](int x, int y) {
-    if (x == 9 && y == 9) return Surface{onPlane(x, y, 1.5f)};
-    return Surface{onPlane(x, y, x < 9 ? 2.0f : 5.0f)};
+    return facing(x, y, x == 9 && y == 9 ? 1.5f : x < 9 ? 2.0f : 5.0f);
   };
   const Values values = [](int x, int) { return x < 9 ? 3.0f : 7.0f; };
   // Along rows and columns one after the other it sees what its own row and column saw.
@@ -214,14 +181,14 @@ TEST_CASE("a pixel that is like none of the samples takes the most alike one's l
 
 TEST_CASE("samples of the background count nothing, and pixels of it get none of the light") {
   const Surfaces surfaces = [](int x, int y) {
-    Surface surface = facing(x, y);
+    SeenSurface surface = facing(x, y);
     surface.hit = x >= 7;
     return surface;
   };
   const Values values = [](int x, int) { return x >= 7 ? 0.25f : 100.0f; };
-  for (const Settings& settings : kAll)
+  for (const Smoothing& settings : kAll)
     for (const char* what : {"diffuse", "occlusion"}) {
-      Settings one = settings;
+      Smoothing one = settings;
       one.what = what;
       const ImageBuffer image = smoothed(surfaces, values, one);
       CAPTURE(settings.every, settings.kernel, what);
@@ -240,11 +207,13 @@ TEST_CASE("noise keeps the share of its variance that the squared weights add up
   constexpr int kWide = 64, kRadius = 3;
   std::vector<float> noise(kWide * kWide);
   for (float& value : noise) value = normal(random);
-  Settings settings{1, "tent", kRadius};
+  Smoothing settings{1, "tent", kRadius};
   settings.size = kWide;
-  const ImageBuffer image =
-      smoothed([](int x, int y) { return Surface{onPlane(x, y, 2.0f, kWide)}; },
-               [&](int x, int y) { return noise[static_cast<std::size_t>(y * kWide + x)]; }, settings);
+  const ImageBuffer image = smoothed(
+      [](int x, int y) {
+        return SeenSurface{onPlane(x, y, 2.0f, kWide), {0, 0, 1}};
+      },
+      [&](int x, int y) { return noise[static_cast<std::size_t>(y * kWide + x)]; }, settings);
   double squares = 0.0, sum = 0.0, squaredSum = 0.0;
   for (int i = -kRadius; i <= kRadius; ++i) {
     const double weight = 1.0 - std::abs(i) / (kRadius + 1.0);
@@ -262,10 +231,12 @@ TEST_CASE(
   // An impulse at one sample reaches as far as the kernel.
   constexpr int kLarge = 81, kAt = 40;
   const auto reachOf = [&](const char* kernel, int radius) {
-    const ImageBuffer image =
-        smoothed([](int x, int y) { return Surface{onPlane(x, y, 2.0f, kLarge)}; },
-                 [](int x, int y) { return x == kAt + 2 && y == kAt + 2 ? 1.0f : 0.0f; },
-                 {.every = 4, .kernel = kernel, .radius = radius, .size = kLarge});
+    const ImageBuffer image = smoothed(
+        [](int x, int y) {
+          return SeenSurface{onPlane(x, y, 2.0f, kLarge), {0, 0, 1}};
+        },
+        [](int x, int y) { return x == kAt + 2 && y == kAt + 2 ? 1.0f : 0.0f; },
+        {.every = 4, .kernel = kernel, .radius = radius, .size = kLarge});
     int reach = 0;
     for (int x = kAt + 2; x < kLarge; ++x)
       if (image.at(x, kAt + 2, 0) > 0.0f) reach = x - kAt - 2;
@@ -282,10 +253,9 @@ TEST_CASE(
 }
 
 TEST_CASE("an image of no such size is refused with its size and with what was expected") {
-  Settings settings;
+  Smoothing settings;
   settings.samplesAcross = 9;
-  CHECK_THROWS_WITH(smoothed(
-                        facing, [](int, int) { return 1.0f; }, settings),
-                    Contains("'diffuse' has 9 x 9 samples for 21 x 21 pixels") &&
-                        Contains("one for each pixel, or for 2 x 2 or 4 x 4"));
+  CHECK_THROWS_MATCHES(
+      smoothed([](int x, int y) { return facing(x, y); }, [](int, int) { return 1.0f; }, settings), Error,
+      Tells("diffuse", "9 x 9", "21 x 21", "2 x 2", "4 x 4"));
 }

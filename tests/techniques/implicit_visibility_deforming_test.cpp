@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/scene_builder.h"
+#include "support/form_factors.h"
 #include "support/surface_elements.h"
 
 using namespace lumivox;
@@ -32,13 +32,10 @@ Scene floorBelow(const std::vector<glm::vec3>& later) {
 /// Of leaves, front and back in turn, W/m^2.
 std::vector<float> irradianceOf(const LinkedScene& linkedScene, const Scene& scene, double time,
                                 double bounces) {
-  PassHarness illuminate(device(), techniques(), "implicit_visibility", "illuminate", scene,
-                         snapshotOf(scene, time));
-  illuminate.setInput("elements", linkedScene.elements);
-  illuminate.setInput("links", linkedScene.links);
-  illuminate.setParameter("bounces", bounces);
-  illuminate.run();
-  const ElementLight& light = illuminate.output<ElementLight>("light");
+  const ElementLight light = LonePass("implicit_visibility.illuminate", scene, {{"bounces", bounces}}, time)
+                                 .in("elements", linkedScene.elements)
+                                 .in("links", linkedScene.links)
+                                 .out<ElementLight>("light");
   for (const gpu::TextureRef& texture : {light.irradiance, light.radiance})
     for (const float value : texture->downloadFloats(0)) REQUIRE(std::isfinite(value));
   std::vector<float> values;
@@ -58,13 +55,6 @@ double skyOverFloor(const Scene& scene, const LinkSettings& settings, double tim
   return sum / count / (kPi * static_cast<double>(kSky));
 }
 
-/// Of the floor's middle to a square of half side a, 1 m above it (Lambert's rectangle above a corner, four
-/// times).
-double squareAbove(double a) {
-  const double root = std::sqrt(1.0 + a * a);
-  return 4.0 / kPi * a / root * std::atan(a / root);
-}
-
 }  // namespace
 
 TEST_CASE("a sheet that shrinks to a point, a line or a place far away casts no shadow and gives no NaN") {
@@ -79,11 +69,11 @@ TEST_CASE("a sheet that shrinks to a point, a line or a place far away casts no 
         for (const std::string push : {"rebinned", "kept"}) {
           CAPTURE(end[1].x, end[1].y, source, method, push);
           const LinkSettings settings{
-              {{"elements", 64.0}, {"source", source}}, {{"method", method}}, {{"push", push}}};
+              {{"elements", 64}, {"source", source}}, {{"method", method}}, {{"push", push}}};
           CHECK(skyOverFloor(floorBelow(end), settings, 1.0, 2.0) == Approx(1.0).epsilon(1e-4));
         }
   // What has not shrunk hides the sky.
-  CHECK(skyOverFloor(floorBelow(ends[0]), {{{"elements", 64.0}}, {{"bins", 16.0}}, {}}, 0.0) ==
+  CHECK(skyOverFloor(floorBelow(ends[0]), {{{"elements", 64}}, {{"bins", 16}}, {}}, 0.0) ==
         Approx(1.0 - squareAbove(0.25)).margin(0.03));
 }
 
@@ -95,8 +85,7 @@ TEST_CASE(
   const auto sky = [&](const std::string& source, const std::string& areas) {
     return skyOverFloor(
         scene,
-        {{{"elements", 800.0}, {"share", 0.5}, {"source", source}, {"areas", areas}}, {{"bins", 16.0}}, {}},
-        1.0);
+        {{{"elements", 800}, {"share", 0.5}, {"source", source}, {"areas", areas}}, {{"bins", 16}}, {}}, 1.0);
   };
   const double now = sky("atlas", "now"), rest = sky("atlas", "rest");
   CAPTURE(hidden, now, rest);

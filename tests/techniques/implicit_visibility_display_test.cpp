@@ -2,13 +2,12 @@
 #include <cmath>
 
 #include "support/element_light.h"
+#include "support/form_factors.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 TEST_CASE("a floor below a ceiling is open by one minus the form factor of the ceiling, within 3 %") {
-  // The middle of a floor, h = 1 m below a square of half side a: four times Lambert's rectangle above its
-  // corner, F = 4 / (2 pi) * 2 A / sqrt(1 + A^2) atan(A / sqrt(1 + A^2)), A = a / h.
   for (const auto& [a, within] : {std::pair(0.5, 100.0), {1.0, 100.0}, {3.0, 100.0}, {1.0, 0.5}}) {
     SceneBuilder builder;
     const int grey = builder.lambert(0.5f);
@@ -28,10 +27,9 @@ TEST_CASE("a floor below a ceiling is open by one minus the form factor of the c
       output ambient_occlusion display.occlusion
     })",
                                           "openness.pipeline");
-    const double root = std::sqrt(1.0 + a * a), factor = 4.0 / kPi * a / root * std::atan(a / root);
-    RenderOptions options;
-    options.parameters = text.settings({"within=" + std::to_string(within) + "m"});
-    const ImageBuffer image = renderOnce(builder.scene, text, options).outputs.at("ambient_occlusion");
+    const double factor = squareAbove(a);
+    const ImageBuffer image = rendered(builder.scene, text, {"within=" + std::to_string(within) + "m"})
+                                  .outputs.at("ambient_occlusion");
     CAPTURE(a, within, factor);
     // Nothing is near enough to count where the ceiling is farther away.
     CHECK(image.at(2, 2, 0) == Approx(within < 1.0 ? 1.0 : 1.0 - factor).margin(0.03));
@@ -57,10 +55,9 @@ TEST_CASE("a Phong lobe under a sky of radiance L reflects its albedo times L st
                      builder.phong(0.0f, 0.5f, exponent));
         builder.look(3.0 * up, {0, 0, 0}, {0, 0, -1}, 0.01, 4, 4);
         builder.scene.environment = glm::vec3(2.0f);
-        RenderOptions options;
-        options.parameters = pipeline("implicit_visibility").settings({"elements=64", one.bins});
         const ImageBuffer image =
-            renderOnce(builder.scene, pipeline("implicit_visibility"), options).outputs.at("indirect_glossy");
+            rendered(builder.scene, pipeline("implicit_visibility"), {"elements=64", one.bins})
+                .outputs.at("indirect_glossy");
         CAPTURE(exponent, one.bins, slant);
         CHECK(image.at(2, 2, 0) == Approx(0.5 * 2.0).epsilon(0.03));
       }
@@ -88,10 +85,8 @@ TEST_CASE("of two walls back to back, closer than elements are wide, the one tha
     builder.quad({-1, -0.01f, -1}, outwards ? x : z, outwards ? z : x, grey);
     builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.3, 8, 8);
     builder.scene.environment = glm::vec3(2.0f);
-    RenderOptions options;
-    options.parameters = pipeline("implicit_visibility").settings({"elements=200"});
-    const ImageBuffer image =
-        renderOnce(builder.scene, pipeline("implicit_visibility"), options).outputs.at("indirect_diffuse");
+    const ImageBuffer image = rendered(builder.scene, pipeline("implicit_visibility"), {"elements=200"})
+                                  .outputs.at("indirect_diffuse");
     CAPTURE(outwards);
     CHECK(image.at(4, 4, 0) == Approx(0.5 * 2.0).epsilon(0.01));
   }

@@ -6,7 +6,9 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "support/facts.h"
 #include "support/half_masked_sheet.h"
+#include "support/meshes.h"
 #include "support/scene_builder.h"
 #include "support/surface_elements.h"
 
@@ -23,20 +25,13 @@ struct PointerNode {
 };
 
 struct Elements {
-  std::unique_ptr<PassHarness> harness;
   SurfaceElements made;
   const ElementState& state() const { return *made.state; }
   const ElementTree& tree() const { return *made.tree; }
 };
 
 Elements elementsOf(const Scene& scene, const Settings& settings, double time = 0.0) {
-  Elements result;
-  result.harness = std::make_unique<PassHarness>(device(), techniques(), "implicit_visibility", "elements",
-                                                 scene, snapshotOf(scene, time));
-  apply(*result.harness, settings);
-  result.harness->run();
-  result.made = result.harness->output<SurfaceElements>("elements");
-  return result;
+  return {LonePass("implicit_visibility.elements", scene, settings, time).out<SurfaceElements>("elements")};
 }
 
 double areaOf(const Elements& elements) {
@@ -59,25 +54,6 @@ void checkOutlineAreas(const Elements& made) {
     }
     CHECK(0.5f * glm::length(twice) == Approx(made.state().area[leaf]).epsilon(1e-4));
   }
-}
-
-/// A sphere of radius 1 in `rings` rings of twice as many sectors, with vertices of its own for each
-/// triangle.
-std::vector<glm::vec3> sphereCorners(int rings) {
-  const auto at = [&](int ring, int sector) {
-    const double polar = kPi * ring / rings, around = kPi * sector / rings;
-    return glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar),
-                     -std::sin(polar) * std::sin(around));
-  };
-  std::vector<glm::vec3> corners;
-  for (int ring = 0; ring < rings; ++ring)
-    for (int sector = 0; sector < 2 * rings; ++sector) {
-      const glm::vec3 a = at(ring, sector), b = at(ring + 1, sector), c = at(ring + 1, sector + 1),
-                      d = at(ring, sector + 1);
-      if (ring + 1 < rings) corners.insert(corners.end(), {a, b, c});
-      if (ring > 0) corners.insert(corners.end(), {a, c, d});
-    }
-  return corners;
 }
 
 Scene boxAndSphere() {
@@ -195,10 +171,10 @@ TEST_CASE(
   motion.axis = glm::normalize(glm::dvec3(1, 2, 3));
   motion.angularSpeed = 0.9;
   for (Object& object : turned.objects) object.motion = motion;
-  checkOutlineAreas(elementsOf(turned, {{"elements", 150.0}}, 0.7));
+  checkOutlineAreas(elementsOf(turned, {{"elements", 150}}, 0.7));
   SceneBuilder builder;
   addHalfMaskedSheet(builder);
-  checkOutlineAreas(elementsOf(builder.scene, {{"elements", 150.0}}));
+  checkOutlineAreas(elementsOf(builder.scene, {{"elements", 150}}));
 }
 
 TEST_CASE("about as many elements are made as were asked for, an object's part by a power of its area") {
@@ -212,7 +188,7 @@ TEST_CASE("about as many elements are made as were asked for, an object's part b
   builder.quad({0, 0, 0}, {0, 0, 100}, {100, 0, 0}, builder.lambert(0.5f));
   builder.quad({0, 5, 0}, {0, 0, 10}, {10, 0, 0}, builder.lambert(0.5f));
   for (const double share : {0.0, 0.5, 1.0}) {
-    const Elements made = elementsOf(builder.scene, {{"elements", 4400.0}, {"share", share}});
+    const Elements made = elementsOf(builder.scene, {{"elements", 4400}, {"share", share}});
     double small = 0.0;
     for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf)
       small += made.tree().objectOfNode[leaf] == 1;
@@ -229,7 +205,7 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
   for (int i = 0; i < kObjects; ++i)
     builder.quad({static_cast<float>(i % 40), 5.0f, static_cast<float>(i / 40)}, {0, 0, 0.7f},
                  {i % 2 == 0 ? 0.7f : 0.2f, 0, 0}, grey);
-  const Elements made = elementsOf(builder.scene, {{"elements", 400.0}});
+  const Elements made = elementsOf(builder.scene, {{"elements", 400}});
   std::vector<int> counts(kObjects + 1, 0);
   for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) ++counts[made.tree().objectOfNode[leaf]];
   // 400, in a square whose sides are multiples of four; by its part among all objects it would be 67.
@@ -240,7 +216,7 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
 
 TEST_CASE(
     "a node lies at the middle of its leaves, by area, and reaches over all of their outlines and discs") {
-  const Elements made = elementsOf(boxAndSphere(), {{"elements", 150.0}});
+  const Elements made = elementsOf(boxAndSphere(), {{"elements", 150}});
   const ElementTree& tree = made.tree();
   const ElementState& state = made.state();
   std::vector<std::vector<std::uint32_t>> leaves(tree.nodeCount);
@@ -291,8 +267,8 @@ TEST_CASE("elements of a body that turns and travels are those of a body that wa
     built.objects[i].placement = glm::dmat4(snapshot.objects[i].toWorld);
     built.objects[i].placement[3] += glm::dvec4(snapshot.origin, 0.0);
   }
-  const Elements a = elementsOf(moving, {{"elements", 600.0}}, time),
-                 b = elementsOf(built, {{"elements", 600.0}});
+  const Elements a = elementsOf(moving, {{"elements", 600}}, time),
+                 b = elementsOf(built, {{"elements", 600}});
   REQUIRE(a.tree().leafCount == b.tree().leafCount);
   const glm::vec3 shift(snapshot.origin - snapshotOf(built, 0.0).origin);
   // Leaves of an object may come in another order of charts: by place.
@@ -313,15 +289,15 @@ TEST_CASE("elements follow a deforming sheet, with the areas of the moment or of
   const Scene scene = deforming({sheetCorners(1.0f), sheetCorners(3.0f)});
   for (const std::string source : {"atlas", "vertices"}) {
     CAPTURE(source);
-    const Settings now{{"elements", 64.0}, {"source", source}};
+    const Settings now{{"elements", 64}, {"source", source}};
     Settings rest = now;
     rest.emplace_back("areas", "rest");
     CHECK(areaOf(elementsOf(scene, now, 0.0)) == Approx(1.0).epsilon(1e-4));
     CHECK(areaOf(elementsOf(scene, now, 0.5)) == Approx(2.0).epsilon(1e-4));
     CHECK(areaOf(elementsOf(scene, rest, 0.5)) == Approx(1.0).epsilon(1e-4));
   }
-  const Elements before = elementsOf(scene, {{"elements", 64.0}}, 0.0),
-                 after = elementsOf(scene, {{"elements", 64.0}}, 0.5);
+  const Elements before = elementsOf(scene, {{"elements", 64}}, 0.0),
+                 after = elementsOf(scene, {{"elements", 64}}, 0.5);
   for (std::uint32_t leaf = 0; leaf < before.tree().leafCount; ++leaf) {
     const glm::vec3 origin(snapshotOf(scene, 0.0).origin);
     const glm::vec3 place = before.state().position[leaf] + origin;
@@ -333,8 +309,7 @@ TEST_CASE("a sheet that shrinks to a point has elements without area, and number
   const Scene scene = deforming({sheetCorners(1.0f), std::vector<glm::vec3>(4, glm::vec3(0.5f, 0, 0.5f))});
   for (const std::string source : {"atlas", "vertices"})
     for (const std::string areas : {"now", "rest"}) {
-      const Elements made =
-          elementsOf(scene, {{"elements", 64.0}, {"source", source}, {"areas", areas}}, 1.0);
+      const Elements made = elementsOf(scene, {{"elements", 64}, {"source", source}, {"areas", areas}}, 1.0);
       for (std::uint32_t node = 0; node < made.tree().nodeCount; ++node) {
         CHECK(made.state().area[node] == 0.0f);
         CHECK(made.state().radius[node] == 0.0f);
@@ -345,8 +320,8 @@ TEST_CASE("a sheet that shrinks to a point has elements without area, and number
 }
 
 TEST_CASE("the same elements stand on two large triangles and on twenty thousand tiny ones") {
-  const Elements large = elementsOf(sheet(1), {{"elements", 256.0}}),
-                 tiny = elementsOf(sheet(100), {{"elements", 256.0}});
+  const Elements large = elementsOf(sheet(1), {{"elements", 256}}),
+                 tiny = elementsOf(sheet(100), {{"elements", 256}});
   REQUIRE(large.tree().leafCount == 256);
   REQUIRE(tiny.tree().leafCount == 256);
   CHECK(tiny.tree().segments.size() == 1);
@@ -361,8 +336,8 @@ TEST_CASE(
     "[.]") {
   const Scene scene = sheet(708);
   REQUIRE(scene.triangleCount() > 1000000);
-  const Elements large = elementsOf(sheet(1), {{"elements", 4096.0}}),
-                 tiny = elementsOf(scene, {{"elements", 4096.0}});
+  const Elements large = elementsOf(sheet(1), {{"elements", 4096}}),
+                 tiny = elementsOf(scene, {{"elements", 4096}});
   REQUIRE(large.tree().leafCount == tiny.tree().leafCount);
   for (std::uint32_t leaf = 0; leaf < large.tree().leafCount; ++leaf) {
     CHECK(glm::distance(large.state().position[leaf], tiny.state().position[leaf]) < 1e-4f);
@@ -370,11 +345,8 @@ TEST_CASE(
   }
   const Elements vertices = elementsOf(scene, {{"source", "vertices"}});
   CHECK(vertices.tree().leafCount == scene.positions.size());
-  PassHarness links(device(), techniques(), "implicit_visibility", "create_links", scene,
-                    snapshotOf(scene, 0.0));
-  links.setInput("elements", vertices.made);
-  links.setParameter("bins", 16.0);
-  CHECK_THAT(messageOf<Error>([&] { links.run(); }), Catch::Contains("elements with 6 x 16 x 16 bins need"));
+  LonePass links("implicit_visibility.create_links", scene, {{"bins", 16}});
+  CHECK_THROWS_MATCHES(links.in("elements", vertices.made).run(), Error, Tells("elements", "6 x 16 x 16"));
 }
 
 TEST_CASE("holes of masks have no elements, and an element has the mean colour of its piece of texture") {
@@ -387,7 +359,7 @@ TEST_CASE("holes of masks have no elements, and an element has the mean colour o
   builder.scene.textures.push_back({"checkered", 2, 2, false, {1, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1}});
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(cut));
   builder.quad({0, 0, 3}, {1, 0, 0}, {0, 1, 0}, builder.material(patterned));
-  const Elements made = elementsOf(builder.scene, {{"elements", 512.0}});
+  const Elements made = elementsOf(builder.scene, {{"elements", 512}});
   double holed = 0.0;
   const std::vector<float> albedo = made.made.albedo->downloadFloats();
   for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf)
@@ -400,7 +372,7 @@ TEST_CASE("holes of masks have no elements, and an element has the mean colour o
 TEST_CASE("a mirrored body keeps its front sides") {
   Scene scene = boxAndSphere();
   for (Object& object : scene.objects) object.placement = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
-  const Elements texels = elementsOf(scene, {{"elements", 400.0}});
+  const Elements texels = elementsOf(scene, {{"elements", 400}});
   for (std::uint32_t leaf = 0; leaf < texels.tree().leafCount; ++leaf) {
     const std::uint32_t object = texels.tree().objectOfNode[leaf];
     if (object >= 6) continue;  // a wall of the box

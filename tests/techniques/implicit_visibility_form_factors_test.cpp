@@ -5,6 +5,7 @@
 #include <map>
 
 #include "support/closed_room.h"
+#include "support/form_factors.h"
 #include "support/surface_elements.h"
 
 using namespace lumivox;
@@ -82,8 +83,7 @@ Scene turned(Scene scene) {
 LinkedScene linkedWith(const Scene& scene, int side, int bins, const std::string& fill) {
   const double leaves = static_cast<double>(side * side) * static_cast<double>(scene.objects.size());
   return linked(
-      scene,
-      {{{"elements", leaves}, {"share", 0.0}}, {{"bins", static_cast<double>(bins)}}, {{"fill", fill}}});
+      scene, {{{"elements", leaves}, {"share", 0}}, {{"bins", static_cast<double>(bins)}}, {{"fill", fill}}});
 }
 
 /// `sizes`: elements along the side of a square, and bins.
@@ -125,7 +125,7 @@ Scene floorAndLamp(const std::vector<glm::vec3>& lamp) {
 
 /// Elements of one size on all objects.
 LinkedScene linkedBySize(const Scene& scene, double elements, double time = 0.0) {
-  return linked(scene, {{{"elements", elements}, {"share", 1.0}}, {{"bins", 64.0}}, {}}, time);
+  return linked(scene, {{{"elements", elements}, {"share", 1}}, {{"bins", 64}}, {}}, time);
 }
 
 int leavesOf(const LinkedScene& scene, std::uint32_t object) {
@@ -149,23 +149,6 @@ std::vector<glm::dvec3> placedAt(const Scene& scene, double time) {
   return result;
 }
 
-/// Lambert's form factor of triangles above a plane, from a point of it: the half sum of the angles that
-/// their sides take times the cosine of these angles' planes, over pi.
-double lambertFactor(const glm::dvec3& point, const glm::dvec3& normal,
-                     const std::vector<glm::dvec3>& triangles) {
-  double sum = 0.0;
-  for (std::size_t t = 0; t < triangles.size(); t += 3) {
-    double ofTriangle = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const glm::dvec3 a = glm::normalize(triangles[t + k] - point),
-                       b = glm::normalize(triangles[t + (k + 1) % 3] - point), across = glm::cross(a, b);
-      ofTriangle += std::acos(glm::dot(a, b)) * glm::dot(normal, glm::normalize(across));
-    }
-    sum += std::abs(ofTriangle) / (2.0 * kPi);
-  }
-  return sum;
-}
-
 /// What the floor sees of the lamp, over what it should.
 double overLambert(const LinkedScene& scene, const std::vector<glm::dvec3>& lamp) {
   const BinWeights weights(scene.links);
@@ -176,7 +159,9 @@ double overLambert(const LinkedScene& scene, const std::vector<glm::dvec3>& lamp
     for (const ElementLink& link : scene.seenBy(leaf))
       if (scene.tree().objectOfNode[link.node] == 1)
         seen += std::max(weights(normal, link.bin()), 0.0) * weights.scale(normal) / kPi;
-    exact += lambertFactor(glm::dvec3(scene.state().position[leaf]), glm::dvec3(normal), lamp);
+    for (std::size_t t = 0; t < lamp.size(); t += 3)
+      exact += polygonFormFactor(glm::dvec3(scene.state().position[leaf]), glm::dvec3(normal),
+                                 {lamp[t], lamp[t + 1], lamp[t + 2]});
   }
   return seen / exact;
 }
@@ -311,7 +296,7 @@ TEST_CASE(
 
 TEST_CASE("what elements of the Cornell box see is what rays see") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
-  const LinkedScene made = linked(scene, {{{"elements", 4096.0}}, {{"bins", 12.0}}, {}});
+  const LinkedScene made = linked(scene, {{{"elements", 4096}}, {{"bins", 12}}, {}});
   const ElementTree& tree = made.tree();
   const glm::dvec3 origin = snapshotOf(scene, 0.0).origin;
   Scene placed = scene;  // everything in the world
@@ -356,7 +341,7 @@ TEST_CASE(
   // Irradiance of the floor in light of radiance 1 from one wall of the furnished cube: the sum of Eq. 4 over
   // elements with traced visibility; the disc factor A cos cos / (pi r^2 + A) is bounded.
   const Scene scene = furnishedCube();
-  const LinkedScene made = linked(scene, {{{"elements", 1500.0}}, {{"bins", 12.0}}, {}});
+  const LinkedScene made = linked(scene, {{{"elements", 1500}}, {{"bins", 12}}, {}});
   const ElementTree& tree = made.tree();
   const glm::dvec3 origin = snapshotOf(scene, 0.0).origin;
   Scene placed = scene;
@@ -394,7 +379,7 @@ TEST_CASE(
 
 TEST_CASE(
     "as printed, the sum over elements makes light from nothing in a cube, with a bounded disc factor hardly any") {
-  const LinkedScene made = linked(closedCube(), {{{"elements", 600.0}}, {{"bins", 1.0}}, {{"fill", "one"}}});
+  const LinkedScene made = linked(closedCube(), {{{"elements", 600}}, {{"bins", 1}}, {{"fill", "one"}}});
   const ElementState& state = made.state();
   double printed = 0.0, bounded = 0.0;
   for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) {

@@ -87,14 +87,14 @@ TEST_CASE("in a closed room every bin sees a wall: irradiance is pi times the ra
       CHECK(sums.least > 0.995);
       CHECK(sums.most < 1.00001);
     }
-  const RowSums furnished = rowSums(linked(furnishedCube(), {{{"elements", 2000.0}}, {}, {}}));
+  const RowSums furnished = rowSums(linked(furnishedCube(), {{{"elements", 2000}}, {}, {}}));
   CAPTURE(furnished.least);
   CHECK(furnished.filled >= 0.995);
   CHECK(furnished.mean == Approx(1.0).margin(0.005));
 }
 
 TEST_CASE("links of the hierarchy fill the bins that all pairs fill, at the same distances") {
-  const Settings elements{{"elements", 600.0}};
+  const Settings elements{{"elements", 600}};
   const LinkedScene tree = linked(furnishedCube(), {elements, {}, {}}),
                     all = linked(furnishedCube(), {elements, {{"method", "all_pairs"}}, {}});
   std::size_t different = 0, links = 0;
@@ -112,9 +112,9 @@ TEST_CASE("links of the hierarchy fill the bins that all pairs fill, at the same
 }
 
 TEST_CASE("as published, pushed as made and in one bin each, a closed room has holes") {
-  const LinkSettings one{{{"elements", 1000.0}}, {{"bins", 12.0}}, {{"fill", "one"}}};
+  const LinkSettings one{{{"elements", 1000}}, {{"bins", 12}}, {{"fill", "one"}}};
   CHECK(rowSums(linked(closedCube(), one)).mean < 0.8);
-  const LinkSettings kept{{{"elements", 1000.0}}, {{"split", 1.0}}, {{"push", "kept"}}};
+  const LinkSettings kept{{{"elements", 1000}}, {{"split", 1}}, {{"push", "kept"}}};
   const RowSums sums = rowSums(linked(closedCube(), kept));
   CAPTURE(sums.mean, sums.least);
   CHECK(sums.mean > 0.97);
@@ -124,8 +124,8 @@ TEST_CASE("as published, pushed as made and in one bin each, a closed room has h
 
 TEST_CASE("split down to the leaves, links are those of all pairs, bit for bit") {
   for (const std::string fill : {"centre", "one"}) {
-    const Settings elements{{"elements", 300.0}}, push{{"fill", fill}};
-    const LinkedScene split = linked(furnishedCube(), {elements, {{"split", 0.0}}, push}),
+    const Settings elements{{"elements", 300}}, push{{"fill", fill}};
+    const LinkedScene split = linked(furnishedCube(), {elements, {{"split", 0}}, push}),
                       all = linked(furnishedCube(), {elements, {{"method", "all_pairs"}}, push});
     const std::uint64_t leaves = split.tree().leafCount;
     CHECK(split.pairs.stillPartners->values.size() == leaves * (leaves - 1));
@@ -135,7 +135,7 @@ TEST_CASE("split down to the leaves, links are those of all pairs, bit for bit")
 }
 
 TEST_CASE("every two leaves are joined by exactly one pair of them or of their ancestors") {
-  const LinkedScene scene = linked(furnishedCube(), {{{"elements", 250.0}}, {}, {}});
+  const LinkedScene scene = linked(furnishedCube(), {{{"elements", 250}}, {}, {}});
   const ElementTree& tree = scene.tree();
   std::vector<std::vector<std::uint32_t>> leaves(tree.nodeCount);
   for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf) {
@@ -154,7 +154,7 @@ TEST_CASE("every two leaves are joined by exactly one pair of them or of their a
 TEST_CASE("what a leaf sees is the nearest over itself and all nodes above it") {
   for (const std::string push : {"kept", "rebinned"}) {
     const LinkedScene scene =
-        linked(furnishedCube(), {{{"elements", 400.0}}, {}, {{"fill", "one"}, {"push", push}}});
+        linked(furnishedCube(), {{{"elements", 400}}, {}, {{"fill", "one"}, {"push", push}}});
     const ElementTree& tree = scene.tree();
     const ElementState& state = scene.state();
     const DirectionBins bins(scene.links.bins, scene.links.mapping);
@@ -193,7 +193,7 @@ TEST_CASE("what a leaf sees is the nearest over itself and all nodes above it") 
 TEST_CASE("one, two and seven threads make the same bits") {
   const auto with = [](std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return linked(furnishedCube(true), {{{"elements", 600.0}}, {}, {}}, 1.0);
+    return linked(furnishedCube(true), {{{"elements", 600}}, {}, {}}, 1.0);
   };
   const LinkedScene one = with(1), two = with(2), seven = with(7);
   REQUIRE(!one.links.seen->values.empty());
@@ -207,8 +207,8 @@ TEST_CASE("one, two and seven threads make the same bits") {
 
 TEST_CASE("a nearer element linked further down hides the one behind it (Fig. 4)") {
   for (const std::string push : {"kept", "rebinned"}) {
-    const LinkedScene scene = linked(threeSheets(), {{{"elements", 48.0}, {"share", 0.0}},
-                                                     {{"bins", 4.0}, {"split", 0.25}},
+    const LinkedScene scene = linked(threeSheets(), {{{"elements", 48}, {"share", 0}},
+                                                     {{"bins", 4}, {"split", 0.25}},
                                                      {{"push", push}, {"fill", "one"}}});
     const ElementTree& tree = scene.tree();
     const auto objectOf = [&](std::uint32_t node) { return tree.objectOfNode[node]; };
@@ -240,7 +240,7 @@ TEST_CASE("a nearer element linked further down hides the one behind it (Fig. 4)
 }
 
 TEST_CASE("light over links of the hierarchy and over those of all pairs differs by at most a twentieth") {
-  const Settings elements{{"elements", 1500.0}};
+  const Settings elements{{"elements", 1500}};
   const std::vector<double> byTree = gathered(linked(furnishedCube(), {elements, {}, {}})),
                             all =
                                 gathered(linked(furnishedCube(), {elements, {{"method", "all_pairs"}}, {}}));
@@ -255,7 +255,7 @@ TEST_CASE("light over links of the hierarchy and over those of all pairs differs
 }
 
 TEST_CASE("links among things that stand still are apart from those with an end that moves") {
-  const LinkedScene scene = linked(furnishedCube(true), {{{"elements", 500.0}}, {}, {}}, 2.0);
+  const LinkedScene scene = linked(furnishedCube(true), {{{"elements", 500}}, {}, {}}, 2.0);
   const ElementTree& tree = scene.tree();
   std::size_t still = 0, moving = 0;
   for (std::uint32_t node = 0; node < tree.nodeCount; ++node) {
@@ -281,7 +281,7 @@ TEST_CASE("planes of one degree between them, needles and coplanar doubles have 
   builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, grey);
   builder.mesh({{0, 1, 0}, {1, 1, 0}, {1, 1.000001f, 0}}, grey);
   builder.mesh({{0, 2, 0}, {1, 2, 0}, {2, 2, 0}}, grey);
-  const RowSums sums = rowSums(linked(builder.scene, {{{"elements", 600.0}}, {}, {}}));
+  const RowSums sums = rowSums(linked(builder.scene, {{{"elements", 600}}, {}, {}}));
   CHECK(sums.most < 1.00001);
   CHECK(sums.mean > 0.1);
 }
@@ -293,7 +293,7 @@ TEST_CASE("of two sheets on each other, hardly apart in their plane, none hides 
   const glm::dmat4 turn = glm::mat4_cast(glm::angleAxis(1.1, glm::normalize(glm::dvec3(1, 2, -0.7))));
   for (const float shift : {0.0f, 3e-4f})
     builder.quad({shift, 0, shift}, {0, 0, 1}, {1, 0, 0}, grey).placement = turn;
-  const RowSums sums = rowSums(linked(builder.scene, {{{"elements", 2048.0}, {"share", 0.0}}, {}, {}}));
+  const RowSums sums = rowSums(linked(builder.scene, {{{"elements", 2048}, {"share", 0}}, {}, {}}));
   CHECK(sums.most == 0.0);
 }
 
@@ -313,15 +313,14 @@ TEST_CASE("many thousand small squares need at most 4 times the pairs that one m
                                        corner + right + back, corner + right});
       }
     if (!separate) builder.mesh(corners, grey);
-    const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-    PassHarness elements(device(), techniques(), "implicit_visibility", "elements", builder.scene, snapshot),
-        create(device(), techniques(), "implicit_visibility", "create_links", builder.scene, snapshot);
-    elements.setParameter("elements", 1024.0);
-    elements.run();
-    create.setInput("elements", elements.output<SurfaceElements>("elements"));
-    create.run();
-    REQUIRE(elements.output<SurfaceElements>("elements").leafCount == kSide * kSide);
-    return create.output<ElementLinks>("links").stillPartners->values.size();
+    const SurfaceElements elements =
+        LonePass("implicit_visibility.elements", builder.scene, {{"elements", 1024}})
+            .out<SurfaceElements>("elements");
+    REQUIRE(elements.leafCount == kSide * kSide);
+    return LonePass("implicit_visibility.create_links", builder.scene)
+        .in("elements", elements)
+        .out<ElementLinks>("links")
+        .stillPartners->values.size();
   };
   const std::size_t apart = pairsOf(true), mesh = pairsOf(false);
   CAPTURE(apart, mesh);
@@ -335,7 +334,7 @@ TEST_CASE("the buffers on the device hold what each leaf sees, and its links to 
   scene.materials.push_back(scene.materials.front());
   scene.materials.back().emission = glm::vec3(1.0f);
   scene.objects[3].parts.front().material = 1;
-  const LinkedScene made = linked(scene, {{{"elements", 300.0}}, {}, {}});
+  const LinkedScene made = linked(scene, {{{"elements", 300}}, {}, {}});
   const auto first = made.links.first->downloadValues<glm::uvec4>();
   const auto links = made.links.links->downloadValues<ElementLink>();
   REQUIRE(made.links.lights != nullptr);

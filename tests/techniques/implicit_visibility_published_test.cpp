@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "lumivox/base/error.h"
+#include "support/facts.h"
 #include "support/half_masked_sheet.h"
 #include "support/kept_table.h"
 #include "support/scene_builder.h"
@@ -23,25 +24,18 @@ constexpr int kPixels = 48;
 struct Shown {
   const Scene& scene;
   SceneSnapshot snapshot;
-  PassHarness gbufferPass, elementsPass, display;
+  GBuffer gbuffer;
   SurfaceElements elements;
+  LonePass display;
 
-  explicit Shown(const Scene& shownScene, double time = 0.0, const std::string& source = "vertices")
+  explicit Shown(const Scene& shownScene, double time = 0.0, const char* source = "vertices")
       : scene(shownScene),
         snapshot(snapshotOf(scene, time, {}, kPixels, kPixels)),
-        gbufferPass(harness("direct_lighting", "gbuffer")),
-        elementsPass(harness("implicit_visibility", "elements")),
-        display(harness("implicit_visibility", "display")) {
-    gbufferPass.run();
-    elementsPass.setParameter("source", source);
-    elementsPass.run();
-    elements = elementsPass.output<SurfaceElements>("elements");
-    display.setInput("gbuffer", gbufferPass.output<GBuffer>("gbuffer"));
-    display.setInput("elements", elements);
-    display.setParameter("interpolate", std::string("vertices"));
-  }
-  PassHarness harness(const char* technique, const char* pass) const {
-    return {device(), techniques(), technique, pass, scene, snapshot};
+        gbuffer(LonePass("direct_lighting.gbuffer", scene, {}, snapshot).out<GBuffer>("gbuffer")),
+        elements(LonePass("implicit_visibility.elements", scene, {{"source", source}}, snapshot)
+                     .out<SurfaceElements>("elements")),
+        display("implicit_visibility.display", scene, {{"interpolate", "vertices"}}, snapshot) {
+    display.in("gbuffer", gbuffer).in("elements", elements);
   }
 
   /// What is shown of the irradiance `ofLeaf(leaf, side)`.
@@ -54,17 +48,13 @@ struct Shown {
         texels[static_cast<std::size_t>(2 * leaf + side)] =
             glm::vec4(ofLeaf(static_cast<std::uint32_t>(leaf), side), 1.0f);
     ElementLight light;
-    light.irradiance = display.context().texture(
-        {.format = gpu::Format::rgba32f, .width = size.x, .height = size.y}, "chosen irradiance");
+    light.irradiance = filled(pixels(size.x, size.y), glm::vec4(0.0f));
     light.irradiance->upload(0, std::as_bytes(std::span(texels)));
     light.radiance = light.irradiance;
-    display.setInput("light", light);
-    display.run();
-    return imageOf(*display.output<Image>("diffuse").texture);
+    return display.in("light", light).image("diffuse");
   }
-  ImageBuffer positions() { return imageOf(*gbuffer().position, 4); }
-  ImageBuffer albedos() { return imageOf(*gbuffer().diffuse); }
-  const GBuffer& gbuffer() { return gbufferPass.output<GBuffer>("gbuffer"); }
+  ImageBuffer positions() { return imageOf(*gbuffer.position, 4); }
+  ImageBuffer albedos() { return imageOf(*gbuffer.diffuse); }
 };
 
 /// Positions are linear over every triangle: shown as irradiance they are those of the g-buffer in each
@@ -190,10 +180,8 @@ TEST_CASE(
 TEST_CASE("values at vertices need elements there: with those of the atlas the message names the word") {
   const SceneBuilder builder = oneTriangle();
   Shown shown(builder.scene, 0.0, "atlas");
-  const std::string message =
-      messageOf<Error>([&] { shown.diffuse([](std::uint32_t, int) { return glm::vec3(1.0f); }); });
-  CHECK_THAT(message, Catch::Contains("'interpolate vertices'") &&
-                          Catch::Contains("'source vertices' in implicit_visibility.elements"));
+  CHECK_THROWS_MATCHES(shown.diffuse([](std::uint32_t, int) { return glm::vec3(1.0f); }), Error,
+                       Tells("interpolate vertices", "source vertices", "implicit_visibility.elements"));
 }
 
 TEST_CASE("without a triangle nothing is shown at vertices") {
@@ -296,19 +284,11 @@ TEST_CASE(
     }
     const Pipeline chosen = Pipeline::parse(text, committed.file);
     const auto image = [&](const std::string& method) {
-      RenderOptions options;
-      options.width = options.height = kPixels;
-      options.parameters = chosen.settings({one.setting, "method=" + method});
-      return renderOnce(scene, chosen, options).outputs.at("indirect_diffuse");
+      return rendered(scene, chosen, {one.setting, "method=" + method}, sized(kPixels, kPixels))
+          .outputs.at("indirect_diffuse");
     };
     const ImageBuffer tree = image("hierarchy"), all = image("all_pairs");
-    double squares = 0.0, sum = 0.0;
-    for (std::size_t i = 0; i < all.values().size(); ++i) {
-      squares += std::pow(static_cast<double>(tree.values()[i]) - static_cast<double>(all.values()[i]), 2.0);
-      sum += static_cast<double>(all.values()[i]);
-    }
-    const auto count = static_cast<double>(all.values().size());
-    const double difference = std::sqrt(squares / count) / (sum / count);
+    const double difference = rmsBetween(tree, all) / meanOf(all);
     CAPTURE(one.scene, difference);
     CHECK(difference > 0.0);
     CHECK(difference <= 0.05);

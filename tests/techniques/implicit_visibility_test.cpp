@@ -17,7 +17,7 @@ TEST_CASE(
   builder.mesh({{2, 0, 0}, {3, 0, 0}, {2, 1, 0}, {3, 1, 0}, {2, 1, 0}, {3, 0, 0}}, builder.lambert(0.5f))
       .name = "plain";
   const LogCapture log;
-  const LinkedScene made = linked(builder.scene, {{{"elements", 128.0}, {"segments", "uv"}}, {}, {}});
+  const LinkedScene made = linked(builder.scene, {{{"elements", 128}, {"segments", "uv"}}, {}, {}});
   CHECK(made.tree().segments.size() == 7);
   CHECK_THAT(log.text(), Catch::Contains("'plain' has no texture coordinates; its charts are used"));
 }
@@ -32,20 +32,17 @@ TEST_CASE("a scene without a triangle has neither elements nor links") {
 
 TEST_CASE("too many links for the memory there is are refused before anything is made") {
   const Scene scene = closedCube();
-  PassHarness elements(device(), techniques(), "implicit_visibility", "elements", scene,
-                       snapshotOf(scene, 0.0));
-  elements.setParameter("elements", 200000.0);
-  elements.run();
+  const SurfaceElements elements = LonePass("implicit_visibility.elements", scene, {{"elements", 200000}})
+                                       .out<SurfaceElements>("elements");
   for (const std::string name : {"create_links", "push_links"}) {
-    PassHarness pass(device(), techniques(), "implicit_visibility", name, scene, snapshotOf(scene, 0.0));
-    pass.setInput("elements", elements.output<SurfaceElements>("elements"));
-    if (name == "create_links") {
-      pass.setParameter("bins", 64.0);
-    } else {
-      ElementLinks none;
-      none.bins = 64;
-      pass.setInput("links", none);
-    }
+    LonePass pass("implicit_visibility." + name, scene);
+    pass.in("elements", elements);
+    ElementLinks none;
+    none.bins = 64;
+    if (name == "create_links")
+      pass.with({{"bins", 64}});
+    else
+      pass.in("links", none);
     CHECK_THAT(
         messageOf<Error>([&] { pass.run(); }),
         Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ [KMGT]iB; memory has "
@@ -59,7 +56,7 @@ TEST_CASE("more links than a buffer of the device takes are refused before it is
   // In a closed room each leaf has a link in each of the 12288 bins of its front.
   const double leaves = std::ceil(1.1 * static_cast<double>(most) / (12288.0 * sizeof(ElementLink)));
   const std::string message = messageOf<Error>([&] {
-    linked(closedCube(), {{{"elements", leaves}}, {{"bins", 64.0}}, {}});
+    linked(closedCube(), {{{"elements", leaves}}, {{"bins", 64}}, {}});
   });
   CHECK_THAT(message,
              Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ MiB; a buffer of "
@@ -72,7 +69,7 @@ TEST_CASE("two triangles that nearly lie on each other are linked without a numb
   for (const std::string source : {"atlas", "vertices"})
     for (const double bins : {1.0, 64.0}) {
       const LinkedScene made =
-          linked(builder.scene, {{{"elements", 16.0}, {"source", source}}, {{"bins", bins}}, {}});
+          linked(builder.scene, {{{"elements", 16}, {"source", source}}, {{"bins", bins}}, {}});
       for (const ElementLink& link : made.links.seen->values) {
         CHECK(std::isfinite(link.distance()));
         CHECK(link.node < made.tree().nodeCount);

@@ -7,12 +7,12 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "support/facts.h"
 #include "support/glsl_functions.h"
 #include "support/virtual_area_lights.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
-using Catch::Contains;
 
 namespace {
 
@@ -29,15 +29,9 @@ SceneBuilder floorAndPanel(float specular, float exponent) {
 }
 RenderOptions few(const Pipeline& text, std::vector<std::string> settings = {}) {
   settings.insert(settings.begin(), {"points=100", "lights=64"});
-  RenderOptions options;
-  options.width = options.height = 24;
+  RenderOptions options = sized(24, 24);
   options.parameters = text.settings(settings);
   return options;
-}
-
-bool ran(const FrameResult& frame, const std::string& pass) {
-  return std::any_of(frame.passes.begin(), frame.passes.end(),
-                     [&](const PassRecord& record) { return record.name == pass && record.ran; });
 }
 
 bool same(const FrameResult& one, const FrameResult& other, const std::string& output) {
@@ -48,12 +42,6 @@ bool same(const FrameResult& one, const FrameResult& other, const std::string& o
 float lightest(const FrameResult& frame, const std::string& output) {
   const std::span<const float> values = frame.outputs.at(output).values();
   return *std::max_element(values.begin(), values.end());
-}
-
-bool reused(const PipelineExecutor& executor, const std::string& what) {
-  const std::vector<LeftOut> all = executor.explain().leftOut;
-  return std::any_of(all.begin(), all.end(),
-                     [&](const LeftOut& left) { return left.what.find(what) != std::string::npos; });
 }
 
 }  // namespace
@@ -97,7 +85,7 @@ TEST_CASE(
     for (const char* pass : {"points", "map", "choose", "gather", "normalise", "occlude", "apply"})
       CHECK(ran(frame, pass) == (scene == &dull));
     if (scene == &dull) {
-      const auto& light = static_cast<const Out<SparseLight>*>(executor.output("gather", "light"))->value();
+      const SparseLight& light = kept<SparseLight>(executor, "gather", "light");
       CHECK(light.diffuse != nullptr);
       CHECK(light.glossy == nullptr);
       CHECK(light.glossyPosition == nullptr);
@@ -116,20 +104,6 @@ TEST_CASE("a frame that nothing changes runs nothing") {
   PipelineExecutor executor(device(), techniques(), scene, text, few(text));
   executor.render(0.0, 0);
   for (const PassRecord& pass : executor.render(0.0, 1).passes) CHECK_FALSE(pass.ran);
-}
-
-TEST_CASE("a frame alone is the frame of a sequence, and the same bits twice, while a glossy panel turns") {
-  const Pipeline text = pipeline("virtual_area_lights");
-  Scene scene = floorAndPanel(0.5f, 20.0f).scene;
-  scene.objects[2].motion = RigidMotion{.angularSpeed = 0.5};
-  PipelineExecutor sequence(device(), techniques(), scene, text, few(text));
-  sequence.render(0.0, 0);
-  const FrameResult next = sequence.render(0.5, 1);
-  for (int time = 0; time < 2; ++time) {
-    PipelineExecutor alone(device(), techniques(), scene, text, few(text));
-    const FrameResult frame = alone.render(0.5, 1);
-    for (const auto& [name, image] : next.outputs) CHECK(same(frame, next, name));
-  }
 }
 
 TEST_CASE("the share of light that is clamped is told, of those points alone that have light") {
@@ -186,8 +160,7 @@ TEST_CASE(
       const FrameResult frame = executor.render(time);
       CAPTURE(settings, time, frame.healthFindings);
       CHECK(frame.healthFindings.empty());
-      const auto& lights =
-          static_cast<const Out<SurfaceLights>*>(executor.output("choose", "lights"))->value();
+      const auto& lights = kept<SurfaceLights>(executor, "choose", "lights");
       float brightest = 0.0f;
       const std::vector<glm::vec4> values = lights.lights->downloadValues<glm::vec4>();
       for (std::size_t i = 0; i < static_cast<std::size_t>(lights.count); ++i)
@@ -224,9 +197,9 @@ TEST_CASE("a number of lights or neighbours that there is no room for is refused
   const auto settingOf = [&](const std::string& setting) {
     return messageOf<Error>([&] { few(text, {setting}); });
   };
-  CHECK_THAT(settingOf("neighbours=33"), Contains("neighbours") && Contains("32"));
-  CHECK_THAT(settingOf("points=65537"), Contains("points") && Contains("65536"));
-  CHECK_THAT(settingOf("lights=0"), Contains("lights") && Contains("65536"));
+  CHECK_THAT(settingOf("neighbours=33"), Tells("neighbours", "1..32") || Tells("neighbours", 32));
+  CHECK_THAT(settingOf("points=65537"), Tells("points", 65536) || Tells("points", "1..65536"));
+  CHECK_THAT(settingOf("lights=0"), Tells("lights", 65536) || Tells("lights", "1..65536"));
   // A million lights, where there is room for a few.
   const Pipeline many = Pipeline::parse(R"(pipeline "many lights" {
   pass gbuffer direct_lighting.gbuffer { }
@@ -238,10 +211,6 @@ TEST_CASE("a number of lights or neighbours that there is no room for is refused
                                         "many_lights.pipeline");
   const Scene scene = floorAndPanel(0.0f, 1.0f).scene;
   gpu::Device tight({.memoryBytes = 16u << 20});
-  RenderOptions options;
-  options.width = options.height = 24;
-  PipelineExecutor executor(tight, techniques(), scene, many, options);
-  CHECK_THAT(
-      messageOf<Error>([&] { executor.render(0.0); }),
-      Contains("room for 1048576 lights on surfaces takes 48.0 MiB") && Contains("the largest that fits is"));
+  PipelineExecutor executor(tight, techniques(), scene, many, sized(24, 24));
+  CHECK_THROWS_MATCHES(executor.render(0.0), Error, Tells(1048576, "lights", "48.0 MiB"));
 }

@@ -44,17 +44,18 @@ std::vector<Shares> sharesOf(double r) {
 
 /// A point that looks up at a ball of radius 1 around (0, 4, 0), with discs before it.
 SparseLight ball(float radius = 1.0f) {
-  return {texels({{1, 1, 1, 1}}, {1024, 1}, "light"), texels({{0, 4, 0, radius}}, {1024, 1}, "place"),
-          nullptr, nullptr};
+  return diffuseLight({{1, 1, 1, 1}}, {{0, 4, 0, radius}});
+}
+/// What occlusion leaves of the light of the first point.
+float left(const std::vector<SparsePoint>& points, const SparseLight& light, const char* combine) {
+  return valuesOf(SparsePasses().occlude(pointsOf(points), light, {{"combine", combine}}).diffuse, 1)
+      .front()
+      .x;
 }
 float open(const std::vector<SparsePoint>& discs, const char* combine = "product", float radius = 1.0f) {
   std::vector<SparsePoint> points{SparsePoint{}};
   points.insert(points.end(), discs.begin(), discs.end());
-  SparsePasses passes;
-  return valuesOf(passes.occlude(pointsOf(points), ball(radius), {{"combine", std::string(combine)}}).diffuse,
-                  1)
-      .front()
-      .x;
+  return left(points, ball(radius), combine);
 }
 SparsePoint disc(const glm::vec3& position, float radius) {
   return {position, glm::normalize(-position), 0.01f, radius};
@@ -140,11 +141,9 @@ TEST_CASE(
   const auto openAt = [&](const glm::vec3& shift, const glm::vec3& light, const char* combine) {
     std::vector<SparsePoint> moved = discs;
     for (SparsePoint& point : moved) point.position += shift;
-    const std::vector<glm::vec4> places(3, glm::vec4(glm::vec3(0, 4, 0) + shift, 1));
-    const SparseLight lit{texels(std::vector<glm::vec4>(3, glm::vec4(light, 7)), {1024, 1}, "light"),
-                          texels(places, {1024, 1}, "place"), nullptr, nullptr};
-    return valuesOf(passes.occlude(pointsOf(moved), lit, {{"combine", std::string(combine)}}).diffuse, 3)
-        .front();
+    const SparseLight lit = diffuseLight(std::vector<glm::vec4>(3, glm::vec4(light, 7)),
+                                         std::vector<glm::vec4>(3, glm::vec4(glm::vec3(0, 4, 0) + shift, 1)));
+    return valuesOf(passes.occlude(pointsOf(moved), lit, {{"combine", combine}}).diffuse, 3).front();
   };
   for (const char* combine : {"product", "sum", "nearest", "mask"}) {
     CAPTURE(combine);
@@ -160,16 +159,9 @@ TEST_CASE(
 
 TEST_CASE(
     "a sphere aside is hidden by the disc that stands before it, as one overhead is, and not by one overhead") {
-  SparsePasses passes;
   const auto openFrom = [&](const glm::vec3& direction, const SparsePoint& hides) {
-    const SparseLight light{texels({{1, 1, 1, 1}}, {1024, 1}, "light"),
-                            texels({glm::vec4(4.0f * direction, 1)}, {1024, 1}, "place"), nullptr, nullptr};
-    return valuesOf(
-               passes.occlude(pointsOf({SparsePoint{}, hides}), light, {{"combine", std::string("product")}})
-                   .diffuse,
-               1)
-        .front()
-        .x;
+    return left({SparsePoint{}, hides}, diffuseLight({{1, 1, 1, 1}}, {glm::vec4(4.0f * direction, 1)}),
+                "product");
   };
   const SparsePoint overhead = disc({0, 2, 0}, 0.3f);
   const float straight = openFrom({0, 1, 0}, overhead);
@@ -200,8 +192,6 @@ TEST_CASE(
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<double> errors;
-  std::vector<SparsePoint> discs;
-  SparsePasses passes;
   for (int placement = 0; placement < 300; ++placement) {
     const double radius = 0.1 + 0.5 * unit(random), height = 0.8 + 1.8 * unit(random);
     // Towards a place in the ball's outline, or a little beside it.
@@ -222,11 +212,7 @@ TEST_CASE(
         if (along > 0.0 && glm::distance(along * way, centre) < radius) hidden += cosine;
       }
     const SparsePoint one{glm::vec3(centre), glm::vec3(normal), 0.01f, static_cast<float>(radius)};
-    const SurfacePoints points = pointsOf({SparsePoint{}, one});
-    errors.push_back(std::abs(
-        1.0 -
-        valuesOf(passes.occlude(points, ball(), {{"combine", std::string("product")}}).diffuse, 1).front().x -
-        hidden / all));
+    errors.push_back(std::abs(1.0 - left({SparsePoint{}, one}, ball(), "product") - hidden / all));
   }
   std::sort(errors.begin(), errors.end());
   double squared = 0.0;

@@ -7,14 +7,12 @@
 
 #include "../../techniques/virtual_area_lights/points/surface_points_port.h"
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/pass.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/facts.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 using namespace lumivox::virtual_area_lights;
-using Catch::Contains;
 
 namespace {
 
@@ -31,11 +29,8 @@ Scene floorAndPanel() {
 }
 
 SurfacePoints pointsOf(const Scene& scene, int count, double time = 0.0) {
-  PassHarness harness(device(), techniques(), "virtual_area_lights", "points", scene,
-                      snapshotOf(scene, time));
-  harness.setParameter("points", count);
-  harness.run();
-  return harness.output<SurfacePoints>("points");
+  return LonePass("virtual_area_lights.points", scene, {{"points", count}}, time)
+      .out<SurfacePoints>("points");
 }
 
 std::vector<glm::vec4> texelsOf(const gpu::TextureRef& texture) {
@@ -46,27 +41,15 @@ std::vector<glm::vec4> texelsOf(const gpu::TextureRef& texture) {
 }
 
 /// The pass alone; images so that there is something to render.
-Pipeline pointsAlone(const std::string& settings = "") {
+Pipeline pointsAlone() {
   return Pipeline::parse(
       "pipeline \"points alone\" {\n"
       "  pass gbuffer direct_lighting.gbuffer { }\n"
       "  pass shadow direct_lighting.shadow_map { }\n"
       "  pass direct direct_lighting.shade {\n    gbuffer gbuffer\n    shadow shadow.depth\n  }\n"
-      "  pass points virtual_area_lights.points {\n    points 100\n" +
-          settings + "  }\n  output direct direct.radiance\n}\n",
+      "  pass points virtual_area_lights.points {\n    points 100\n"
+      "  }\n  output direct direct.radiance\n}\n",
       "points_alone.pipeline");
-}
-
-RenderOptions small() {
-  RenderOptions options;
-  options.width = options.height = 16;
-  return options;
-}
-
-bool ran(const FrameResult& frame, const std::string& pass) {
-  const auto found = std::find_if(frame.passes.begin(), frame.passes.end(),
-                                  [&](const PassRecord& record) { return record.name == pass; });
-  return found != frame.passes.end() && found->ran;
 }
 
 }  // namespace
@@ -114,12 +97,12 @@ TEST_CASE(
     "points are made when something wants them, once while nothing moves, and spread once for all times") {
   Scene scene = floorAndPanel();
   // Nothing wants them.
-  PipelineExecutor unwanted(device(), techniques(), scene, pointsAlone(), small());
+  PipelineExecutor unwanted(device(), techniques(), scene, pointsAlone(), sized(16, 16));
   CHECK_FALSE(ran(unwanted.render(0.0), "points"));
-  PipelineExecutor moving(device(), techniques(), scene, pointsAlone(), small());
+  PipelineExecutor moving(device(), techniques(), scene, pointsAlone(), sized(16, 16));
   moving.keepOutput("points", "points");
   const auto points = [](const PipelineExecutor& executor) {
-    return static_cast<const Out<SurfacePoints>*>(executor.output("points", "points"))->value();
+    return kept<SurfacePoints>(executor, "points", "points");
   };
   CHECK(ran(moving.render(0.0, 0), "points"));
   const SurfacePoints first = points(moving);
@@ -128,18 +111,15 @@ TEST_CASE(
   const SurfacePoints second = points(moving);
   CHECK(second.set == first.set);
   CHECK(second.state->position != first.state->position);
-  const Explanation explanation = moving.explain();
-  CHECK(std::any_of(explanation.leftOut.begin(), explanation.leftOut.end(), [](const LeftOut& left) {
-    return left.what.find("surface points") != std::string::npos;
-  }));
+  CHECK(reused(moving, "surface points"));
   // A frame alone is that of the sequence.
-  PipelineExecutor alone(device(), techniques(), scene, pointsAlone(), small());
+  PipelineExecutor alone(device(), techniques(), scene, pointsAlone(), sized(16, 16));
   alone.keepOutput("points", "points");
   alone.render(0.5);
   CHECK(points(alone).position->download(0) == second.position->download(0));
   CHECK(points(alone).candidates->download() == second.candidates->download());
   scene.objects[1].motion.reset();
-  PipelineExecutor still(device(), techniques(), scene, pointsAlone(), small());
+  PipelineExecutor still(device(), techniques(), scene, pointsAlone(), sized(16, 16));
   still.keepOutput("points", "points");
   CHECK(ran(still.render(0.0, 0), "points"));
   CHECK_FALSE(ran(still.render(0.5, 1), "points"));
@@ -154,7 +134,7 @@ TEST_CASE(
                      "scenes/pipelines/virtual_area_lights/virtual_area_lights_as_published.pipeline");
   for (const Pipeline* made : {&ours, &published})
     for (const bool everything : {false, true}) {
-      RenderOptions options = small();
+      RenderOptions options = sized(16, 16);
       options.keepEverything = everything;
       PipelineExecutor executor(device(), techniques(), nothing, *made, options);
       const FrameResult frame = executor.render(0.0);
@@ -175,9 +155,7 @@ TEST_CASE("more points than there is room for are refused before anything is tak
   PassHarness harness(tight, techniques(), "virtual_area_lights", "points", scene, snapshotOf(scene, 0.0));
   harness.setParameter("points", 131072);
   // 48 bytes in textures, 32 and 480 in the grid.
-  CHECK_THAT(
-      messageOf<Error>([&] { harness.run(); }),
-      Contains("room for 131072 surface points takes 70.0 MiB") && Contains("the largest that fits is 8192"));
+  CHECK_THROWS_MATCHES(harness.run(), Error, Tells(131072, "70.0 MiB", 8192));
 }
 
 TEST_CASE("a point for each side is enough to be found, and a mesh without area has none") {

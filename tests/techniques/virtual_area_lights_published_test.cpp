@@ -10,6 +10,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/voxelizers.h"
 #include "support/against_reference.h"
+#include "support/facts.h"
 #include "support/half_masked_sheet.h"
 #include "support/kept_table.h"
 #include "support/virtual_area_lights.h"
@@ -20,53 +21,36 @@ using namespace lumivox::test;
 namespace {
 
 constexpr int kPixels = 48;
-const PassSettings kAsPublished{{"as_published", std::string("on")}};
-const PassSettings kAtVertices{{"at", std::string("vertices")}};
+const Settings kAsPublished{{"as_published", "on"}};
+const Settings kAtVertices{{"at", "vertices"}};
 
 /// What a scene's camera sees at one time, and the pass that shows light on it.
 struct Shown {
   const Scene& scene;
   SceneSnapshot snapshot;
-  PassHarness gbufferPass;
+  GBuffer gbuffer;
 
   explicit Shown(const Scene& shownScene, double time = 0.0)
       : scene(shownScene),
         snapshot(snapshotOf(scene, time, {}, kPixels, kPixels)),
-        gbufferPass(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot) {
-    gbufferPass.run();
-  }
+        gbuffer(LonePass("direct_lighting.gbuffer", scene, {}, snapshot).out<GBuffer>("gbuffer")) {}
   SurfacePoints points(int count) const {
-    PassHarness pass(device(), techniques(), "virtual_area_lights", "points", scene, snapshot);
-    pass.setParameter("points", static_cast<double>(count));
-    pass.run();
-    return pass.output<SurfacePoints>("points");
+    return lone("points", {{"points", count}}).out<SurfacePoints>("points");
   }
   virtual_area_lights::VertexPoints vertices(const SurfacePoints& points) const {
-    PassHarness pass(device(), techniques(), "virtual_area_lights", "vertices", scene, snapshot);
-    pass.setInput("points", points);
-    pass.run();
-    return pass.output<virtual_area_lights::VertexPoints>("vertices");
+    return lone("vertices", {}).in("points", points).out<virtual_area_lights::VertexPoints>("vertices");
+  }
+  LonePass lone(const std::string& name, const Settings& settings) const {
+    return {"virtual_area_lights." + name, scene, settings, snapshot};
   }
   /// Diffuse and, where the scene has glossy surfaces, glossy.
   std::pair<ImageBuffer, ImageBuffer> apply(const SurfacePoints& points, const SparseLight& light,
-                                            const PassSettings& settings) {
-    PassHarness pass(device(), techniques(), "virtual_area_lights", "apply", scene, snapshot);
-    for (const auto& [key, value] : settings)
-      std::visit([&, &name = key](const auto& set) { pass.setParameter(name, set); }, value);
-    pass.setInput("gbuffer", gbuffer());
-    pass.setInput("points", points);
-    pass.setInput("light", light);
-    pass.setInput("vertices", vertices(points));
-    pass.run();
-    return {imageOf(*pass.output<Image>("diffuse").texture),
-            light.glossy ? imageOf(*pass.output<Image>("glossy").texture) : ImageBuffer()};
+                                            const Settings& settings) {
+    LonePass pass = lone("apply", settings);
+    pass.in("gbuffer", gbuffer).in("points", points).in("light", light).in("vertices", vertices(points));
+    return {pass.image("diffuse"), light.glossy ? pass.image("glossy") : ImageBuffer()};
   }
-  const GBuffer& gbuffer() { return gbufferPass.output<GBuffer>("gbuffer"); }
 };
-
-gpu::TextureRef ofPoints(const std::vector<glm::vec4>& values, const char* label) {
-  return texels(values, SurfacePoints::sizeFor(static_cast<int>(values.size())), label);
-}
 
 bool differ(const ImageBuffer& a, const ImageBuffer& b) {
   return !std::equal(a.values().begin(), a.values().end(), b.values().begin(), b.values().end());
@@ -95,7 +79,7 @@ TEST_CASE(
   const SurfacePoints points = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, kExponent}});
   SparsePasses passes;
   const SparseLight light =
-      passes.gather(points, lightsOf(lights), {{"as_published", std::string("on")}, {"factor", kFactor}});
+      passes.gather(points, lightsOf(lights), {{"as_published", "on"}, {"factor", kFactor}});
   for (const bool glossy : {false, true}) {
     double sum = 0.0, weights = 0.0;
     glm::dvec3 mean(0.0), squares(0.0);
@@ -129,17 +113,16 @@ TEST_CASE(
 
 TEST_CASE("Eq. 11 as printed: the squared distance over the cosine or the lobe, without a bound") {
   const SurfacePoints points = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 10.0f}});
-  const SparseLight light{ofPoints({{3, 3, 3, 1}}, "light"),
-                          ofPoints({{1.2f, 1.6f, 0, 1}}, "place"),  // 2 m away, cosine 0.8
-                          ofPoints({{3, 3, 3, 11}}, "light"), ofPoints({{1.2f, 1.6f, 0, 1}}, "place")};
+  const SparseLight light{texels({{3, 3, 3, 1}}), texels({{1.2f, 1.6f, 0, 1}}),  // 2 m away, cosine 0.8
+                          texels({{3, 3, 3, 11}}), texels({{1.2f, 1.6f, 0, 1}})};
   SparsePasses passes;
   const SparseLight found = passes.normalise(points, light, kAsPublished);
   CHECK(valuesOf(found.diffuse, 1).front().x == Approx(3.0 * 4.0 / 0.8).epsilon(1e-5));
   CHECK(valuesOf(found.glossy, 1).front().x == Approx(3.0 * 4.0 / std::pow(0.8, 10.0)).epsilon(1e-4));
   // As far as a float holds it.
   SparseLight grazing = light;
-  grazing.diffusePosition = ofPoints({{1e6f, 1e-30f, 0, 1}}, "place");
-  grazing.diffuse = ofPoints({{1e20f, 0, 0, 1}}, "light");
+  grazing.diffusePosition = texels({{1e6f, 1e-30f, 0, 1}});
+  grazing.diffuse = texels({{1e20f, 0, 0, 1}});
   const glm::vec4 most = valuesOf(passes.normalise(points, grazing, kAsPublished).diffuse, 1).front();
   CHECK(most.x == Approx(1e30f));
   CHECK(most.y == 0.0f);
@@ -152,16 +135,16 @@ TEST_CASE(
                                          {{0, 1, 0}, {0, -1, 0}, 0.01f, 0.1f},
                                          {{0, 1.2f, 0}, {0, -1, 0}, 0.01f, 0.1f}});
   const std::vector<glm::vec4> lights{{1, 1, 1, 1}, {}, {}}, places{{0, 2, 0, 0.5f}, {}, {}};
-  const SparseLight light{ofPoints(lights, "light"), ofPoints(places, "place"), nullptr, nullptr};
+  const SparseLight light = diffuseLight(lights, places);
   const auto disc = [](double distance) { return 0.01 / (distance * distance + 0.01); };
   SparsePasses passes;
-  const auto open = [&](const PassSettings& settings) {
+  const auto open = [&](const Settings& settings) {
     return valuesOf(passes.occlude(points, light, settings).diffuse, 1).front().x;
   };
   const double printed = 0.25 / (4.0 + 0.25), ours = 0.25 / 4.0;
-  CHECK(open({{"as_published", std::string("on")}}) ==
+  CHECK(open({{"as_published", "on"}}) ==
         Approx((1.0 - disc(1.0) / printed) * (1.0 - disc(1.2) / printed)).epsilon(1e-4));
-  CHECK(open({{"combine", std::string("product")}}) ==
+  CHECK(open({{"combine", "product"}}) ==
         Approx((1.0 - disc(1.0) / ours) * (1.0 - disc(1.2) / ours)).epsilon(1e-4));
 }
 
@@ -199,13 +182,10 @@ TEST_CASE(
       }
       set->area = 0.06;
       points.set = set;
-      PassSettings settings = published ? kAsPublished : kAtVertices;
-      const auto [diffuseImage, glossyImage] =
-          shown.apply(points,
-                      {ofPoints(diffuse, "light"), ofPoints(diffusePlace, "place"),
-                       ofPoints(glossy, "glossy"), ofPoints(glossyPlace, "glossy place")},
-                      settings);
-      const ImageBuffer positions = imageOf(*shown.gbuffer().position, 4);
+      Settings settings = published ? kAsPublished : kAtVertices;
+      const auto [diffuseImage, glossyImage] = shown.apply(
+          points, {texels(diffuse), texels(diffusePlace), texels(glossy), texels(glossyPlace)}, settings);
+      const ImageBuffer positions = imageOf(*shown.gbuffer.position, 4);
       const std::size_t first = height > 0.0f ? 0 : 3;
       const glm::dvec3 normal(0.0, height > 0.0f ? 1.0 : -1.0, 0.0), eye(shown.snapshot.camera.eye);
       const glm::dvec3 a(places[0].position), b(places[1].position), c(places[2].position);
@@ -276,11 +256,8 @@ TEST_CASE("a corner without a point near it leaves light and place to the other 
   set->area = 0.04;
   SurfacePoints points = pointsOf(places, 0.1f, 1);
   points.set = set;
-  const ImageBuffer image =
-      shown
-          .apply(points, {ofPoints(lights, "light"), ofPoints(above, "place"), nullptr, nullptr}, kAtVertices)
-          .first;
-  const ImageBuffer positions = imageOf(*shown.gbuffer().position, 4);
+  const ImageBuffer image = shown.apply(points, diffuseLight(lights, above), kAtVertices).first;
+  const ImageBuffer positions = imageOf(*shown.gbuffer.position, 4);
   int seen = 0;
   double worst = 0.0;
   for (int y = 0; y < kPixels; ++y)
@@ -304,7 +281,7 @@ TEST_CASE(
     std::vector<glm::vec4> lights, places(count, glm::vec4(0.3f, 40.0f, 30.0f, 1.0f));
     for (const glm::vec4& normal : normals)
       lights.emplace_back(1.0f + 2.0f * normal.w, 1.0f, 0.5f * normal.w, 0.0f);
-    const SparseLight light{ofPoints(lights, "light"), ofPoints(places, "place"), nullptr, nullptr};
+    const SparseLight light = diffuseLight(lights, places);
     const ImageBuffer pixels = shown.apply(points, light, {}).first,
                       vertices = shown.apply(points, light, kAtVertices).first;
     double worst = 0.0;
@@ -342,13 +319,10 @@ TEST_CASE(
   Shown shown(builder.scene);
   const SurfacePoints points = shown.points(16);
   const std::vector<glm::vec4> ones(static_cast<std::size_t>(points.count), glm::vec4(1.0f));
-  const SparseLight light{ofPoints(ones, "light"), ofPoints(ones, "place"), nullptr, nullptr};
-  const std::string message = messageOf<Error>([&] {
-    shown.apply(points, light, {{"as_published", std::string("on")}, {"interpolate", std::string("plain")}});
-  });
-  CHECK_THAT(message, Catch::Contains("'interpolate averaged' is published, and 'interpolate plain' given"));
-  CHECK_NOTHROW(
-      shown.apply(points, light, {{"at", std::string("vertices")}, {"interpolate", std::string("plain")}}));
+  const SparseLight light = diffuseLight(ones, ones);
+  CHECK_THROWS_MATCHES(shown.apply(points, light, {{"as_published", "on"}, {"interpolate", "plain"}}), Error,
+                       Tells("interpolate averaged", "interpolate plain"));
+  CHECK_NOTHROW(shown.apply(points, light, {{"at", "vertices"}, {"interpolate", "plain"}}));
 }
 
 TEST_CASE("light at vertices without their points, or with those of other points, is refused") {
@@ -356,16 +330,11 @@ TEST_CASE("light at vertices without their points, or with those of other points
   Shown shown(builder.scene);
   const SurfacePoints points = shown.points(16), others = shown.points(8);
   const std::vector<glm::vec4> ones(static_cast<std::size_t>(points.count), glm::vec4(1.0f));
-  PassHarness pass(device(), techniques(), "virtual_area_lights", "apply", shown.scene, shown.snapshot);
-  pass.setParameter("at", std::string("vertices"));
-  pass.setInput("gbuffer", shown.gbuffer());
-  pass.setInput("points", points);
-  pass.setInput("light", SparseLight{ofPoints(ones, "light"), ofPoints(ones, "place"), nullptr, nullptr});
-  CHECK_THAT(messageOf<Error>([&] { pass.run(); }), Catch::Contains("reads 'vertices'; expected it"));
-  pass.setInput("vertices", shown.vertices(others));
-  CHECK_THAT(messageOf<Error>([&] { pass.run(); }), Catch::Contains("refer to other points"));
-  pass.setInput("vertices", shown.vertices(points));
-  CHECK_NOTHROW(pass.run());
+  LonePass pass = shown.lone("apply", kAtVertices);
+  pass.in("gbuffer", shown.gbuffer).in("points", points).in("light", diffuseLight(ones, ones));
+  CHECK_THROWS_MATCHES(pass.run(), Error, Tells("vertices"));
+  CHECK_THROWS_MATCHES(pass.in("vertices", shown.vertices(others)).run(), Error, Tells("other points"));
+  CHECK_NOTHROW(pass.in("vertices", shown.vertices(points)).run());
 }
 
 TEST_CASE("what vertices refer to is found once, by a pass of its own that light at pixels leaves out") {
@@ -376,13 +345,8 @@ TEST_CASE("what vertices refer to is found once, by a pass of its own that light
   builder.light(LightKind::point, glm::vec3(1.0f), {0, 1, 0.4});
   builder.look({0, 0.5, 3}, {0, 0.4, 0}, {0, 1, 0}, 0.7, 16, 16);
   const Pipeline committed = pipeline("virtual_area_lights");
-  RenderOptions options;
-  options.width = options.height = 16;
+  RenderOptions options = sized(16, 16);
   options.parameters = committed.settings({"points=64", "lights=64"});
-  const auto ran = [](const FrameResult& frame, const std::string& pass) {
-    return std::any_of(frame.passes.begin(), frame.passes.end(),
-                       [&](const PassRecord& record) { return record.name == pass && record.ran; });
-  };
   {
     PipelineExecutor pixels(device(), techniques(), builder.scene, committed, options);
     const FrameResult frame = pixels.render(0.0, 0);
@@ -393,10 +357,7 @@ TEST_CASE("what vertices refer to is found once, by a pass of its own that light
   PipelineExecutor vertices(device(), techniques(), builder.scene, committed, options);
   vertices.keepOutput("vertices", "vertices");
   const auto buffer = [&] {
-    return dynamic_cast<const Out<virtual_area_lights::VertexPoints>&>(
-               *vertices.output("vertices", "vertices"))
-        .value()
-        .any;
+    return kept<virtual_area_lights::VertexPoints>(vertices, "vertices", "vertices").any;
   };
   CHECK(ran(vertices.render(0.0, 0), "vertices"));
   const gpu::BufferRef found = buffer();
@@ -449,13 +410,7 @@ namespace {
 
 /// RMS difference over the mean of the second.
 double differenceOf(const ImageBuffer& image, const ImageBuffer& right) {
-  double squares = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < right.values().size(); ++i) {
-    squares += std::pow(static_cast<double>(image.values()[i] - right.values()[i]), 2.0);
-    sum += static_cast<double>(right.values()[i]);
-  }
-  const auto count = static_cast<double>(right.values().size());
-  return std::sqrt(squares / count) / (sum / count);
+  return rmsBetween(image, right) / meanOf(right);
 }
 
 /// Diffuse light without occlusion, with words added to the passes `normalise` and `apply`.
@@ -531,10 +486,8 @@ TEST_CASE("table: light at the vertices of large models against that at pixels, 
   KeptTable table("virtual_area_lights.vertices_of_models", {{"difference over the mean", 3, 0.005, 0.02}});
   for (const auto& [name, albedo] : {std::pair("bunny", 0.72f), std::pair("dragon", 0.35f)}) {
     const Scene scene = loadScene(sourceDirectory() / ("scenes/" + std::string(name) + ".scene"));
-    PassHarness seen(device(), techniques(), "direct_lighting", "gbuffer", scene,
-                     snapshotOf(scene, 0.0, {}, 64, 64));
-    seen.run();
-    const ImageBuffer albedos = imageOf(*seen.output<GBuffer>("gbuffer").diffuse);
+    LonePass seen("direct_lighting.gbuffer", scene, {}, snapshotOf(scene, 0.0, {}, 64, 64));
+    const ImageBuffer albedos = imageOf(*seen.out<GBuffer>("gbuffer").diffuse);
     for (const int points : {512, 2048, 8192}) {
       ImageBuffer vertices = diffuseWith(scene, points, "", "    at vertices\n"),
                   pixels = diffuseWith(scene, points, "", "");

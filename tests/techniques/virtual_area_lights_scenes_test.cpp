@@ -13,10 +13,6 @@ namespace {
 
 const char* const kBruteForce = "virtual_area_lights/virtual_area_lights_brute_force";
 
-Scene committed(const std::string& name) {
-  return loadScene(sourceDirectory() / ("scenes/" + name + ".scene"));
-}
-
 /// Without the cache, which knows a scene by its text.
 LayeredImage tracedOf(const Scene& scene, const Picture& picture) {
   ReferenceOptions options = quietly(picture.referenceSamples, 1);
@@ -144,7 +140,7 @@ Kept bumps(const std::vector<DiscLight>& discs) {
   const SparseLight light = passes.normalise(made, passes.gather(made, lights));
   const ImageBuffer right = passes.bruteForce(lights, seen).first;
   return {beside(passes.apply(made, light, seen).first, right).rmse,
-          beside(passes.apply(made, light, seen, {{"interpolate", std::string("plain")}}).first, right).rmse};
+          beside(passes.apply(made, light, seen, {{"interpolate", "plain"}}).first, right).rmse};
 }
 
 /// A patch beside the plane, and a dome over it which is brighter on one side by `tilt` of its mean.

@@ -27,23 +27,6 @@ std::vector<DiscLight> ceiling(float half, float height, int n, float exitance =
   return lights;
 }
 
-/// All walls of a cube of side 2 around the origin, n x n lights each, which shine inwards.
-std::vector<DiscLight> closedBox(int n) {
-  std::vector<DiscLight> lights;
-  const float side = 2.0f / static_cast<float>(n);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const float sign : {-1.0f, 1.0f})
-      for (int i = 0; i < n * n; ++i) {
-        glm::vec3 position(0.0f), normal(0.0f);
-        position[axis] = sign;
-        normal[axis] = -sign;
-        position[(axis + 1) % 3] = -1.0f + side * (static_cast<float>(i % n) + 0.5f);
-        position[(axis + 2) % 3] = -1.0f + side * (static_cast<float>(i / n) + 0.5f);
-        lights.push_back({position, normal, side * side, glm::vec3(1.0f)});
-      }
-  return lights;
-}
-
 std::vector<SparsePoint> randomPoints(int count, float exponent = -1.0f) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> place(-1.0f, 1.0f);
@@ -64,7 +47,7 @@ TEST_CASE(
   for (const float x : {0.0f, 0.5f, 1.0f - 2.0f * kTexel, 1.0f - 0.5f * kTexel})
     points.push_back({{x, -1, 0.5f * kTexel}});
   SparsePasses passes;
-  const SparseLight light = passes.gather(pointsOf(points), lightsOf(closedBox(kSide)));
+  const SparseLight light = passes.gather(pointsOf(points), lightsOf(shiningBox(kSide)));
   const std::vector<glm::vec4> found = valuesOf(light.diffuse, points.size());
   for (std::size_t i = 0; i < 3; ++i) {
     CAPTURE(i);
@@ -127,24 +110,23 @@ TEST_CASE(
   const std::vector<SparsePoint> points{{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 10.0f}};
   const SurfacePoints made = pointsOf(points);
   SparsePasses passes;
-  SparseLight light{texels({{1, 1, 1, 2}}, {1024, 1}, "light"), texels({{0, -1, 0, 1}}, {1024, 1}, "place"),
-                    nullptr, nullptr};
+  SparseLight light = diffuseLight({{1, 1, 1, 2}}, {{0, -1, 0, 1}});
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == 0.0f);
-  light.diffusePosition = texels({{1, 0.001, 0, 1}}, {1024, 1}, "place");  // cosine 1e-3
+  light.diffusePosition = texels({{1, 0.001, 0, 1}});  // cosine 1e-3
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(2.0));
   // Of coloured light the strongest channel decides, and the hue stays; however near the place is.
   for (const glm::vec3& colour : {glm::vec3(1, 4, 2), glm::vec3(4, 1, 2), glm::vec3(1, 2, 4)}) {
     SparseLight coloured = light;
-    coloured.diffuse = texels({{colour.x, colour.y, colour.z, 8}}, {1024, 1}, "light");
-    coloured.diffusePosition = texels({{0.1, 0.0001, 0, 1}}, {1024, 1}, "place");
+    coloured.diffuse = texels({{colour.x, colour.y, colour.z, 8}});
+    coloured.diffusePosition = texels({{0.1, 0.0001, 0, 1}});
     const glm::vec4 found = valuesOf(passes.normalise(made, coloured).diffuse, 1).front();
     for (int c = 0; c < 3; ++c) CHECK(found[c] == Approx(2.0 * colour[c]));
   }
-  light.diffuse = texels({{1, 1, 1, 100}}, {1024, 1}, "light");
+  light.diffuse = texels({{1, 1, 1, 100}});
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(10.0));
   CHECK(valuesOf(passes.normalise(made, light, {{"amplification", 4.0}}).diffuse, 1).front().x ==
         Approx(4.0));
-  CHECK(valuesOf(passes.normalise(made, light, {{"as_published", std::string("on")}}).diffuse, 1).front().x ==
+  CHECK(valuesOf(passes.normalise(made, light, {{"as_published", "on"}}).diffuse, 1).front().x ==
         Approx(1000.0).epsilon(0.001));
 }
 
@@ -173,9 +155,7 @@ TEST_CASE("a plane one metre wide under a light at half a metre is lit within 2 
 TEST_CASE("equal light of all neighbours is interpolated to itself, within 1e-6") {
   const std::vector<SparsePoint> points = randomPoints(50);
   const SurfacePoints made = pointsOf(points);
-  const SparseLight light{texels(std::vector<glm::vec4>(50, glm::vec4(1, 2, 3, 9)), {1024, 1}, "light"),
-                          texels(std::vector<glm::vec4>(50, glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"),
-                          nullptr, nullptr};
+  const SparseLight light = lightOverhead(std::vector<glm::vec4>(50, glm::vec4(1, 2, 3, 9)));
   std::vector<SparsePoint> seen = randomPoints(64);
   SparsePasses passes;
   const ImageBuffer image = passes.apply(made, light, seen).first;
@@ -188,11 +168,7 @@ TEST_CASE(
   const auto lit = [](int count) {
     std::vector<glm::vec4> values;
     for (int i = 0; i < count; ++i) values.emplace_back(static_cast<float>(i + 1), 0, 0, 1);
-    return SparseLight{
-        texels(values, {1024, 1}, "light"),
-        texels(std::vector<glm::vec4>(static_cast<std::size_t>(count), glm::vec4(0, 1e4, 0, 1)), {1024, 1},
-               "place"),
-        nullptr, nullptr};
+    return lightOverhead(values);
   };
   const std::vector<SparsePoint> seen(64, SparsePoint{});
   SparsePasses passes;
@@ -247,10 +223,7 @@ TEST_CASE(
   const SurfacePoints made = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1000.0f}}, 0.1f);
   const SurfaceLights light = lightsOf({{{0, 0.5f, 0}, {0, -1, 0}, 1e-4f}});
   const auto exponentBy = [&](const char* limit) {
-    return valuesOf(passes.gather(made, light, {{"exponent_limit", std::string(limit)}}).glossy, 1)
-               .front()
-               .w -
-           1.0f;
+    return valuesOf(passes.gather(made, light, {{"exponent_limit", limit}}).glossy, 1).front().w - 1.0f;
   };
   CHECK(exponentBy("spacing") == Approx(2.0 * 25.0).epsilon(1e-3));
   CHECK(exponentBy("none") == Approx(1000.0).epsilon(1e-5));
@@ -290,9 +263,7 @@ TEST_CASE(
 TEST_CASE(
     "a neighbour counts by one minus its distance over that of the farthest, times the cosine between the normals") {
   // Lights 1, 2 and 5 so far away that all stand overhead.
-  const SparseLight light{texels({{1, 0, 0, 1}, {2, 0, 0, 1}, {5, 0, 0, 1}}, {1024, 1}, "light"),
-                          texels(std::vector<glm::vec4>(3, glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"),
-                          nullptr, nullptr};
+  const SparseLight light = lightOverhead({{1, 0, 0, 1}, {2, 0, 0, 1}, {5, 0, 0, 1}});
   const std::vector<SparsePoint> seen(64);
   SparsePasses passes;
   const auto leaning = [](float cosine) { return glm::vec3(std::sqrt(1.0f - cosine * cosine), cosine, 0); };
@@ -312,10 +283,7 @@ TEST_CASE("points farther than where all are told of count only where none is ne
   const auto lit = [](const std::vector<SparsePoint>& points) {
     std::vector<glm::vec4> values;
     for (const SparsePoint& point : points) values.emplace_back(point.position.x, 0, 0, 1);
-    return SparseLight{
-        texels(values, {1024, 1}, "light"),
-        texels(std::vector<glm::vec4>(points.size(), glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"), nullptr,
-        nullptr};
+    return lightOverhead(values);
   };
   const std::vector<SparsePoint> near{{{0.1f, 0, 0}}, {{0.2f, 0, 0}}, {{0.3f, 0, 0}}, {{0.4f, 0, 0}}},
       far{{{0.3f, 0, 0}}, {{0.4f, 0, 0}}}, seen(64);
@@ -341,19 +309,19 @@ TEST_CASE("lights in chunks and through group memory, and lights of two sources,
                                 &SparseLight::glossyPosition})
       CHECK(valuesOf(one.*member, 100) == valuesOf(other.*member, 100));
   };
-  const SparseLight shared = passes.gather(made, lightsOf(all), {{"method", std::string("shared")}}),
-                    cached = passes.gather(made, lightsOf(all), {{"method", std::string("cached")}});
+  const SparseLight shared = passes.gather(made, lightsOf(all), {{"method", "shared"}}),
+                    cached = passes.gather(made, lightsOf(all), {{"method", "cached"}});
   same(shared, cached);
   // More than a loop of a shader may take, the last one brighter than all.
   std::vector<DiscLight> many(70000, all[3]);
   many.back().exitance = glm::vec3(1e6f);
-  same(passes.gather(made, lightsOf(many), {{"method", std::string("shared")}}),
-       passes.gather(made, lightsOf(many), {{"method", std::string("cached")}}));
+  same(passes.gather(made, lightsOf(many), {{"method", "shared"}}),
+       passes.gather(made, lightsOf(many), {{"method", "cached"}}));
   // Two whole chunks from one source, the rest from the other.
   const SurfaceLights rest = lightsOf({all.begin() + 256, all.end()});
   for (const char* method : {"shared", "cached"})
-    same(shared, passes.gather(made, lightsOf({all.begin(), all.begin() + 256}),
-                               {{"method", std::string(method)}}, &rest));
+    same(shared,
+         passes.gather(made, lightsOf({all.begin(), all.begin() + 256}), {{"method", method}}, &rest));
 }
 
 TEST_CASE(
@@ -367,7 +335,7 @@ TEST_CASE(
   const SurfacePoints made = pointsOf(points);
   SparsePasses passes({0.2, 0.4, 0.1});
   const std::vector<DiscLight> lights = ceiling(0.5f, 0.3f, 20);
-  const SparseLight all = passes.gather(made, lightsOf(lights), {{"exponent_limit", std::string("none")}});
+  const SparseLight all = passes.gather(made, lightsOf(lights), {{"exponent_limit", "none"}});
   const auto [diffuse, glossy] = passes.bruteForce(lightsOf(lights), points);
   const std::vector<glm::vec4> asPoints = valuesOf(all.diffuse, 64), asShiny = valuesOf(all.glossy, 64);
   int lit = 0;
@@ -394,10 +362,9 @@ TEST_CASE(
   const glm::vec3 place(0.3f, 0.2f, -0.1f), eye(0.05f, 0.2f, 0.1f);
   SparsePasses passes(eye);
   SparsePoint point{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 7.0f};
-  const SparseLight light{nullptr, nullptr, texels({{2, 3, 4, 8}}, {1024, 1}, "light"),
-                          texels({{place.x, place.y, place.z, 1}}, {1024, 1}, "place")};
+  const SparseLight light{nullptr, nullptr, texels({{2, 3, 4, 8}}), texels({{place.x, place.y, place.z, 1}})};
   SparseLight both = light;
-  both.diffuse = texels({{2, 3, 4, 1}}, {1024, 1}, "light");
+  both.diffuse = texels({{2, 3, 4, 1}});
   both.diffusePosition = light.glossyPosition;
   std::vector<SparsePoint> seen = randomPoints(64, 7.0f);
   for (SparsePoint& one : seen) {
@@ -421,7 +388,7 @@ TEST_CASE(
   CHECK(lit > 20);
   // Without a lobe all in front of the mirror's plane counts in full, and a wide one widely.
   for (const float exponent : {0.0f, 0.2f}) {
-    both.glossy = texels({{2, 3, 4, 1.0f + exponent}}, {1024, 1}, "light");
+    both.glossy = texels({{2, 3, 4, 1.0f + exponent}});
     const glm::vec3 mirror = glm::reflect(glm::normalize(-eye), seen[5].normal);
     const float cosine = glm::dot(mirror, glm::normalize(place));
     REQUIRE(cosine > 0.0f);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lumivox/scene/medium.h"
 #include "support/marching.h"
 
 using namespace lumivox;
@@ -14,19 +13,9 @@ constexpr double kIsotropic = 1.0 / (4.0 * kPi);  // Listing 4.53 with g = 0, wh
 
 Marched marchAsPublished(const Scene& scene, const ScatteringGrid& media, const GBuffer& gbuffer, int steps,
                          const Settings& words = {}) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  PassHarness harness(device(), techniques(), "volumetric_smoke", "march_as_published", scene, snapshot);
-  harness.setParameter("resolution", std::string("full"));
-  harness.setParameter("steps", steps);
-  for (const auto& [name, word] : words) harness.setParameter(name, word);
-  shadow.run();
-  harness.setInput("shadow", shadow.output<ShadowMap>("depth"));
-  harness.setInput("gbuffer", gbuffer);
-  harness.setInput("media", media);
-  harness.run();
-  return {imageOf(*harness.output<Image>("scattered").texture),
-          imageOf(*harness.output<Image>("transmittance").texture)};
+  Settings settings = words;
+  settings.emplace_back("steps", steps);
+  return marchBy("march_as_published", scene, media, gbuffer, settings);
 }
 
 /// A floor far below gives the scene its size, six metres, and a speck far above its middle, the origin;
@@ -151,28 +140,14 @@ TEST_CASE(
 
 TEST_CASE(
     "as published each particle counts one in its voxel, and a voxel of any number scatters as one of one") {
-  Medium medium;
-  medium.name = "smoke";
-  medium.extinction = glm::vec3(2.0f);
-  medium.albedo = glm::vec3(0.8f);
-  medium.particles = 3000;
-  medium.source = {0.1, -0.6, -2.0};
-  medium.spread = 0.2;
-  medium.radius = 0.15;
-  medium.rise = 0.4;
-  medium.drift = 0.08;
-  medium.life = 3.0;
+  const Medium medium = smokeFrom({0.1, -0.6, -2.0});
   SceneBuilder builder = sunnyFloor(2.0f);
   builder.scene.media.push_back(medium);
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
-  PassHarness particles(device(), techniques(), "volumetric_smoke", "particles", builder.scene, snapshot);
-  PassHarness insert(device(), techniques(), "volumetric_smoke", "insert", builder.scene, snapshot);
-  particles.run();
-  insert.setParameter("resolution", 24);
-  insert.setParameter("deposit", std::string("counts"));
-  insert.setInput("particles", particles.output<Particles>("particles"));
-  insert.run();
-  const ScatteringGrid grid = insert.output<ScatteringGrid>("media");
+  LonePass particles("volumetric_smoke.particles", builder.scene),
+      insert("volumetric_smoke.insert", builder.scene, {{"resolution", 24}, {"deposit", "counts"}});
+  insert.in("particles", particles.out<Particles>("particles"));
+  const ScatteringGrid grid = insert.out<ScatteringGrid>("media");
   const ScatteringGrid::Medium& inserted = grid.media.front();
   const glm::ivec3 size = inserted.grid.resolution;
   std::vector<int> counts(static_cast<std::size_t>(size.x * size.y * size.z), 0);

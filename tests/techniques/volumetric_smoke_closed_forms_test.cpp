@@ -188,8 +188,8 @@ TEST_CASE("a point light inside smoke that varies is its integral, marching to i
                  std::exp(-double(extinction) * (0.5 * t + (0.5 + 0.1 * kHeight) * r));
         }
         const double expected = double(extinction) * 0.5 * 0.9 * 10.0 * sum * 3.5 / kPieces / 3.0;
-        const ImageBuffer found = march(builder.scene, smoke, gbuffer, 128, {{"light_depth", way.depth}},
-                                        {{"light_resolution", way.points}})
+        const ImageBuffer found = march(builder.scene, smoke, gbuffer, 128,
+                                        {{"light_depth", way.depth}, {"light_resolution", way.points}})
                                       .scattered;
         CAPTURE(way.depth, way.points, g, extinction, expected);
         CHECK(valueOf(found, kPixels * 9 + 5) == Approx(expected).epsilon(way.tolerance));
@@ -215,7 +215,7 @@ TEST_CASE("densities are integrated exactly over as many cells as asked for, alo
           varyingMedium(static_cast<float>(kExtinction), 0.5f, 0.0f, glm::vec3(-2.0f), kVoxel, glm::ivec3(16),
                         [&](const glm::vec3& place) { return densityAlong(glm::dot(place, direction)); });
       const GBuffer gbuffer = surfacesAt([&](int) { return 1.5f * direction; });
-      const ImageBuffer through = march(emptyScene(), smoke, gbuffer, 1, {}, {{"cells", 4}}).transmittance;
+      const ImageBuffer through = march(emptyScene(), smoke, gbuffer, 1, {{"cells", 4}}).transmittance;
       CHECK(valueOf(through, 7) == Approx(std::exp(-kExtinction * integral)).epsilon(0.005));
     }
 }
