@@ -177,6 +177,7 @@ TEST_CASE("the page, the CSV and the JSON hold the same records, and the page ne
   // What runs have too is called as in theirs.
   const std::string head = csv.substr(0, csv.find("\r\n"));
   CHECK(contains(head, "device,driver,scene,pipeline,default,"));
+  CHECK(contains(head, ",frame_ms,frame_ms_lower_quartile,frame_ms_upper_quartile,repeats,"));
   CHECK(contains(head, ",parameter_resolution"));
   CHECK(pageRecords(page).at("voxels") == json["records"]);
   CHECK(pageRecords(page).at("scaling") == json["scaling"]);
