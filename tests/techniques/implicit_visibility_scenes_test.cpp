@@ -8,6 +8,7 @@
 
 #include "support/against_reference.h"
 #include "support/kept_table.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;

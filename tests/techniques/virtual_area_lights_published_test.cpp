@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../../techniques/virtual_area_lights/vertex_points.h"
+#include "../../techniques/virtual_area_lights/vertices/vertex_points.h"
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/voxelizers.h"
 #include "support/against_reference.h"
