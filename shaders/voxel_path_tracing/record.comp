@@ -1,7 +1,6 @@
 #version 450
 // One ray of one path for each pixel, as published: every surface of the path stays in textures (thesis Gomes 2015, Fig. 41), one layer each,
 // and bring_back.comp carries the light back over them.
-#pragma lumivox require MAP || ATTRIBUTES || !GLOSSY
 #include "path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -5,7 +5,6 @@
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED
 #pragma lumivox require GLOSSY || !REFLECTED
-#pragma lumivox require MAP || ATTRIBUTES || !GLOSSY
 #include "path.glsl"
 #include "sums.glsl"
 
