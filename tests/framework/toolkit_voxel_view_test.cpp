@@ -98,13 +98,14 @@ TEST_CASE("a field has the same values whatever holds it: texels, stacks of bits
   CHECK(counted[2].at(4, 2, 2) == 2.0f);
   CHECK(counted[2].at(1, 0, 0) == 1.0f);
   const auto occupied = largest(size, listOf(voxels, false));
+  const auto filled = largest({4, 3, 2}, VoxelsFilled{});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
     CHECK(largest(size, listOf(voxels, true))[axis].values() == counted[axis].values());
     CHECK(largest(size, VoxelBits{stacks})[axis].values() == occupied[axis].values());
     for (std::size_t i = 0; i < occupied[axis].values().size(); ++i)
       CHECK(occupied[axis].values()[i] == std::min(counted[axis].values()[i], 1.0f));
-    for (const float value : largest({4, 3, 2}, VoxelsFilled{})[axis].values()) CHECK(value == 1.0f);
+    for (const float value : filled[axis].values()) CHECK(value == 1.0f);
   }
 }
 
