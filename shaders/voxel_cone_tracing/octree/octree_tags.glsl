@@ -1,5 +1,5 @@
-// Tags are a bit for each node that could be (toolkit/bit_tree.glsl), set where there is one: so all nodes are counted, and room is made for
-// them, before any is written. A tile of eight nodes is a byte.
+// Tags are a bit for each node that could be (toolkit/bit_tree.glsl), set where there is one: so all nodes are counted, and room is made
+// for them, before any is written. A tile of eight nodes is a byte.
 #ifndef LUMIVOX_OCTREE_TAGS
 #define LUMIVOX_OCTREE_TAGS
 #include "toolkit/bit_tree.glsl"
