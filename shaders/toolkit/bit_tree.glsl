@@ -1,5 +1,5 @@
-// A bit for each node that a tree over a grid could have: depth d, from the root at 0 on, has 8^d of them along a Morton curve, and the depths
-// lie one behind the other. RankedTags count the bits before theirs, so a node finds its place in a list of the nodes in one read.
+// A bit for each node that a tree over a grid could have: depth d, from the root at 0 on, has 8^d of them along a Morton curve, and the
+// depths lie one behind the other. RankedTags count the bits before theirs, so a node finds its place in a list of the nodes in one read.
 // C++ side: framework/include/lumivox/toolkit/bit_tree.h.
 #ifndef LUMIVOX_BIT_TREE
 #define LUMIVOX_BIT_TREE

@@ -1,5 +1,5 @@
-// Where the light or the fragments of voxels may differ from those of static geometry as it was lit once: a bit for each cell of voxels, and
-// for what lies above the cells. What has not changed need not be lit, averaged or filtered again.
+// Where the light or the fragments of voxels may differ from those of static geometry as it was lit once: a bit for each cell of voxels,
+// and for what lies above the cells. What has not changed need not be lit, averaged or filtered again.
 // C++ side: ChangedCells in framework/include/lumivox/toolkit/change_tracking.h.
 #ifndef LUMIVOX_CHANGED_CELLS
 #define LUMIVOX_CHANGED_CELLS
