@@ -184,7 +184,7 @@ TEST_CASE("a tree that outgrows its room is made again with all of it, and a sma
 
 TEST_CASE("a tree that does not fit is refused") {
   gpu::DeviceOptions options;
-  options.memoryBytes = 1300u << 10;
+  options.memoryBytes = 1500u << 10;
   gpu::Device small(options);
   const glm::ivec3 size(128);
   const Scene scene = cones::emptyScene();
