@@ -16,8 +16,7 @@ inline gpu::TextureDescription smallImage(int side = 4) {
 }
 
 /// The mean over frames of `source` plus 0, 1, 2 ...: a progressive technique whose samples are known.
-class Progressive : public Toy {
- public:
+struct Progressive : Toy {
   using Toy::Toy;
   In<Image> source{this, "source", "what is there in every frame"};
   Param<int> side{this, "side", 4, {1, 64}, "of the history"};
@@ -36,8 +35,7 @@ class Progressive : public Toy {
 };
 
 /// `light` plus half of what a pass made in the frame before.
-class Feedback : public Toy {
- public:
+struct Feedback : Toy {
   using Toy::Toy;
   In<Image> light{this, "light", "new light"};
   In<Image> previous{this, "previous", Presence::history, "all light of the frame before"};
@@ -49,8 +47,7 @@ class Feedback : public Toy {
 };
 
 /// Light of a medium that changes with time: none where there is no medium.
-class Flicker : public Toy {
- public:
+struct Flicker : Toy {
   using Toy::Toy;
   Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium};
   Reads readsFrom() const override { return Reads::time; }
@@ -93,12 +90,6 @@ inline std::vector<float> valuesOf(const FrameResult& frame) {
   for (const auto& [name, image] : frame.outputs)
     all.insert(all.end(), image.values().begin(), image.values().end());
   return all;
-}
-
-inline const LeftOut* find(const Explanation& explanation, LeftOut::Level level, const std::string& what) {
-  for (const LeftOut& one : explanation.leftOut)
-    if (one.level == level && one.what.rfind(what, 0) == 0) return &one;
-  return nullptr;
 }
 
 }  // namespace lumivox::test

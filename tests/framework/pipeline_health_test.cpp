@@ -11,8 +11,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// Bad values at known places of a 4 x 4 image.
-class Sick : public Toy {
- public:
+struct Sick : Toy {
   using Toy::Toy;
   Out<Image> image{this, "image"};
   void run(PassContext& frame) override {
@@ -31,8 +30,7 @@ struct ToyPool {
   Image image;
 };
 
-class SickPool : public Sick {
- public:
+struct SickPool : Sick {
   using Sick::Sick;
   Out<ToyPool> pool{this, "pool"};
   void run(PassContext& frame) override {
@@ -59,10 +57,8 @@ struct lumivox::PortTraits<ToyPool> {
 
 TEST_CASE("the health scan names pass, port, count and first place of bad values") {
   Fixture f;
-  if (!f) return;
   f.techniques.add<Sick>("toy", "sick");
-  RenderOptions options;
-  options.health = true;
+  const RenderOptions options = with(&RenderOptions::health);
   PipelineExecutor executor = f.executor("pass ill toy.sick { }\noutput o ill.image", options);
   const FrameResult frame = executor.render(0.0);
   CHECK(frame.healthFindings ==
@@ -76,11 +72,9 @@ TEST_CASE("the health scan names pass, port, count and first place of bad values
 
 TEST_CASE("the health scan leaves out texels of a pool that mean nothing, and no others") {
   Fixture f;
-  if (!f) return;
   f.techniques.add<SickPool>("toy", "sick_pool");
-  RenderOptions options;
-  options.health = true;
-  PipelineExecutor executor = f.executor("pass ill toy.sick_pool { }\noutput o ill.image", options);
+  PipelineExecutor executor =
+      f.executor("pass ill toy.sick_pool { }\noutput o ill.image", with(&RenderOptions::health));
   executor.keepOutput("ill", "pool");
   std::vector<std::string> findings = executor.render(0.0).healthFindings;
   findings.erase(std::remove_if(findings.begin(), findings.end(),

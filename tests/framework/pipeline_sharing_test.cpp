@@ -16,8 +16,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// Paints where in the world the device has the first vertex of the scene, and its first material's red.
-class ShowScene : public Toy {
- public:
+struct ShowScene : Toy {
   using Toy::Toy;
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
@@ -34,8 +33,7 @@ class ShowScene : public Toy {
 };
 
 /// Paints what it has written to a volume that it needs only meanwhile, of the shape of a grid.
-class Work : public Toy {
- public:
+struct Work : Toy {
   using Toy::Toy;
   Param<float> value{this, "value", 1.0f, {-10.0f, 10.0f}, "", "radiance"};
   Out<Image> radiance{this, "radiance", Contributes::direct};

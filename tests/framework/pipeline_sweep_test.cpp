@@ -1,13 +1,16 @@
 // Sweeps in the texts: grids, lists, steps, seeds, and texts of sweeps alone.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <set>
 
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/sweep_text.h"
+#include "support/facts.h"
 #include "support/support.h"
 
 using namespace lumivox;
-using Catch::Contains;
+using lumivox::test::Tells;
 
 namespace {
 
@@ -26,12 +29,6 @@ Pipeline withSweep(const std::string& sweep) {
 std::string findingsOf(const std::string& sweep) {
   return test::messageOf<DiagnosticsError>([&] { withSweep(sweep); });
 }
-std::vector<std::string> valuesOf(const std::string& axis) {
-  const Pipeline pipeline = withSweep("sweep s { " + axis + " }\n");
-  std::vector<std::string> values;
-  for (const ParameterValue& value : pipeline.sweeps.at(0).axes.at(0).second) values.push_back(value.text());
-  return values;
-}
 
 }  // namespace
 
@@ -48,80 +45,68 @@ TEST_CASE("a list sweep has the points along its lists, and one value holds for 
   CHECK(withSweep("sweep s grid { n [1 2 4]  x [0.1 0.2] }\n").sweeps[0].points().size() == 6);
 }
 
-TEST_CASE(
-    "steps multiply or add from the lower end up to the upper one, which belongs to them when they meet it") {
-  using Texts = std::vector<std::string>;
-  CHECK(valuesOf("n times 2 in 8..64") == Texts{"8", "16", "32", "64"});
-  CHECK(valuesOf("n times 2 in 6..47") == Texts{"6", "12", "24"});
-  CHECK(valuesOf("n plus 3 in 1..10") == Texts{"1", "4", "7", "10"});
-  // A tenth is no binary fraction, but nobody wants to read 0.30000000000000004.
-  CHECK(valuesOf("x plus 0.1 in 0..0.5") == Texts{"0", "0.1", "0.2", "0.3", "0.4", "0.5"});
-  CHECK(valuesOf("d plus 1 cm in 1..3 cm") == Texts{"0.01", "0.02", "0.03"});
-  CHECK(valuesOf("n times 2 in 5..5") == Texts{"5"});
+TEST_CASE("steps multiply or add from the lower end to the upper, inclusive when they meet it") {
+  const auto [axis, values] = GENERATE(table<const char*, const char*>({
+      {"n times 2 in 8..64", "8 16 32 64 "},
+      {"n times 2 in 6..47", "6 12 24 "},
+      {"n times 2 in 5..5", "5 "},
+      {"n plus 3 in 1..10", "1 4 7 10 "},
+      {"x plus 0.1 in 0..0.5", "0 0.1 0.2 0.3 0.4 0.5 "},  // none of 0.30000000000000004
+      {"d plus 1 cm in 1..3 cm", "0.01 0.02 0.03 "},
+      {"frames times 2 in 1..8", "1 2 4 8 "},  // accumulated frames are an axis of every pipeline
+  }));
+  const Pipeline pipeline = withSweep(fmt::format("sweep s {{ {} }}\n", axis));
+  std::string found;
+  for (const ParameterValue& value : pipeline.sweeps.at(0).axes.at(0).second) found += value.text() + " ";
+  CHECK(found == values);
 }
 
-TEST_CASE("steps that never end, run backwards or mix units are refused at their place") {
-  CHECK_THAT(findingsOf("sweep s { n times 1 in 1..8 }\n"),
-             Contains("a.pipeline:8:19: these steps never reach"));
-  CHECK_THAT(findingsOf("sweep s { n plus 0 in 1..8 }\n"), Contains("a step above 0"));
-  CHECK_THAT(findingsOf("sweep s { x times 2 in 0..1 }\n"), Contains("a lower end above 0"));
-  CHECK_THAT(findingsOf("sweep s { n plus 1 in 8..1 }\n"),
-             Contains("a.pipeline:8:23: the range runs backwards"));
-  CHECK_THAT(findingsOf("sweep s { d plus 1 in 1..3 cm }\n"), Contains("different units"));
-  CHECK_THAT(findingsOf("sweep s { n times 2 }\n"), Contains("expected n times 2 in LOW..HIGH"));
-  CHECK_THAT(findingsOf("sweep s { x plus 0.00001 in 0..1 }\n"),
-             Contains("too many steps; expected at most 4096"));
+TEST_CASE("each mistake in a sweep is told at its place") {
+  const auto [sweep, told] = GENERATE(table<const char*, Tells>({
+      {"sweep s { n times 1 in 1..8 }", Tells("a.pipeline:8:19", "never")},
+      {"sweep s { n plus 0 in 1..8 }", Tells("step", "above 0")},
+      {"sweep s { x times 2 in 0..1 }", Tells("lower end", "above 0")},
+      {"sweep s { n plus 1 in 8..1 }", Tells("a.pipeline:8:23", "backwards")},
+      {"sweep s { d plus 1 in 1..3 cm }", Tells("units")},
+      {"sweep s { n times 2 }", Tells("n times 2 in LOW..HIGH")},
+      {"sweep s { x plus 0.00001 in 0..1 }", Tells("steps", 4096)},
+      {"sweep s { seeds [1 1 -2 0.5 many] }", Tells("a.pipeline:8:20", "seed", 1, "twice", "a.pipeline:8:22",
+                                                    "a.pipeline:8:25", "a.pipeline:8:29", "seed")},
+      {"sweep s list { n [1 2 4]  x [0.1 0.2] }", Tells("a.pipeline:8:27", "x", 2, "n", 3)},
+      {"sweep s lists { n [1] }", Tells("mean", "list")},
+      {"sweep { n [1] }", Tells("one name")},
+      {"sweep s { x plus 0.001 in 0..1  d plus 0.00025 in 0.01..0.5 }", Tells("points", 131072)},
+      {"sweep s { scenes [\"a.scene\"]  n [1] }", Tells("no scenes")},
+      {"sweep s { frames [0] }", Tells("a.pipeline:8:19", "frames", "1..65536")},
+      {"sweep s { frames [1 2.5] }", Tells("whole")},
+      {"sweep s { frames [2 s] }", Tells("fit", "frames")},
+      {"sweep s { frames [many] }", Tells("fit", "frames")},
+  }));
+  CAPTURE(sweep);
+  CHECK_THAT(findingsOf(std::string(sweep) + "\n"), told);
   // A step beyond the parameter's range is one finding, not one for each value.
   const std::string beyond = findingsOf("sweep s { n times 2 in 32..256 }\n");
-  CHECK_THAT(beyond, Contains("this value does not fit the parameter 'n'; expected a number in 1..64"));
+  CHECK_THAT(beyond, Tells("fit", "n", "1..64"));
   CHECK(beyond.find("does not fit") == beyond.rfind("does not fit"));
 }
 
-TEST_CASE("seeds of a sweep are whole numbers, each once, beside parameters or alone") {
-  const Pipeline pipeline = withSweep("sweep s { seeds [7 3]  n [1 2] }\nsweep t { seeds [1] }\n");
+TEST_CASE("seeds of a sweep stand beside parameters or alone, and accumulated frames beside parameters") {
+  const Pipeline pipeline = withSweep(
+      "sweep s { seeds [7 3]  n [1 2] }\nsweep t { seeds [1] }\nsweep u { frames [1 16]  n [1 2] }\n");
   CHECK(pipeline.sweeps[0].seeds == std::vector<std::uint64_t>{7, 3});
   CHECK(pipeline.sweeps[0].points().size() == 2);
   REQUIRE(pipeline.sweeps[1].points().size() == 1);
   CHECK(pipeline.sweeps[1].points()[0].empty());
-  const std::string wrong = findingsOf("sweep s { seeds [1 1 -2 0.5 many] }\n");
-  CHECK_THAT(wrong, Contains("a.pipeline:8:20: the seed 1 is given twice"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:22: this is not a seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:25: this is not a seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:29: this is not a seed"));
+  REQUIRE(pipeline.sweeps[2].points().size() == 4);
+  CHECK(pipeline.sweeps[2].points()[2].at("frames").number == 16.0);
 }
 
-TEST_CASE("a list of unequal axes, an unknown kind and a sweep with too many points are refused") {
-  CHECK_THAT(findingsOf("sweep s list { n [1 2 4]  x [0.1 0.2] }\n"),
-             Contains("a.pipeline:8:27: 'x' has 2 values, but 'n' has 3"));
-  CHECK_THAT(findingsOf("sweep s lists { n [1] }\n"), Contains("did you mean 'list'"));
-  CHECK_THAT(findingsOf("sweep { n [1] }\n"), Contains("a sweep needs one name"));
-  CHECK_THAT(findingsOf("sweep s { x plus 0.001 in 0..1  d plus 0.00025 in 0.01..0.5 }\n"),
-             Contains("points; expected at most 131072"));
-}
-
-TEST_CASE("a pipeline names no scenes, and no parameter takes a word of sweeps") {
-  CHECK_THAT(findingsOf("sweep s { scenes [\"a.scene\"]  n [1] }\n"), Contains("a pipeline names no scenes"));
-  const std::string reserved = test::messageOf<DiagnosticsError>([] {
-    Pipeline::parse("pipeline \"P\" {\n  param seeds 1\n  pass a t.p { n $seeds }\n}\n", "a.pipeline");
-  });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a reserved word of sweeps"));
-}
-
-TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers from 1 on, and no parameter") {
-  CHECK(valuesOf("frames times 2 in 1..8") == std::vector<std::string>{"1", "2", "4", "8"});
-  const auto points = withSweep("sweep s { frames [1 16]  n [1 2] }\n").sweeps.at(0).points();
-  REQUIRE(points.size() == 4);
-  CHECK(points[2].at("frames").number == 16.0);
-  CHECK_THAT(
-      findingsOf("sweep s { frames [0] }\n"),
-      Contains("a.pipeline:8:19: this value does not fit the parameter 'frames'") && Contains("1..65536"));
-  CHECK_THAT(findingsOf("sweep s { frames [1 2.5] }\n"), Contains("a whole number"));
-  CHECK_THAT(findingsOf("sweep s { frames [2 s] }\n"), Contains("does not fit the parameter 'frames'"));
-  CHECK_THAT(findingsOf("sweep s { frames [many] }\n"), Contains("does not fit the parameter 'frames'"));
-  const std::string reserved = test::messageOf<DiagnosticsError>([] {
-    Pipeline::parse("pipeline \"P\" {\n  param frames 1\n  pass a t.p { n $frames }\n}\n", "a.pipeline");
-  });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a reserved word of sweeps"));
+TEST_CASE("no parameter takes a word of sweeps") {
+  const std::string word = GENERATE("seeds", "frames");
+  CHECK_THROWS_MATCHES(
+      Pipeline::parse("pipeline \"P\" {\n  param " + word + " 1\n  pass a t.p { n $" + word + " }\n}\n",
+                      "a.pipeline"),
+      DiagnosticsError, Tells("a.pipeline:2:9", word, "reserved"));
 }
 
 TEST_CASE("the table of the sweep texts has the words that the reader knows") {

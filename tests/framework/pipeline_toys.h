@@ -12,8 +12,7 @@
 namespace lumivox::test {
 
 /// Techniques that live in the test program.
-class TestTechniques : public TechniqueSource {
- public:
+struct TestTechniques : TechniqueSource {
   template <class PassType>
   void add(const std::string& techniqueName, const std::string& pass) {
     Technique* technique = nullptr;
@@ -54,8 +53,7 @@ class TestTechniques : public TechniqueSource {
   std::vector<std::string> ran_;
 };
 
-class Toy : public Pass {
- public:
+struct Toy : Pass {
   Toy(std::vector<std::string>& ran, std::string kind) : ran_(&ran), kind_(std::move(kind)) {}
 
  protected:
@@ -75,8 +73,7 @@ class Toy : public Pass {
 };
 
 /// Paints `value`; what it reads is up to the subclass.
-class Paint : public Toy {
- public:
+struct Paint : Toy {
   using Toy::Toy;
   Param<float> value{this, "value", 1.0f, {-10.0f, 10.0f}, "", "radiance"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
@@ -86,15 +83,13 @@ class Paint : public Toy {
   }
 };
 
-class PaintCamera : public Paint {
- public:
+struct PaintCamera : Paint {
   using Paint::Paint;
   Reads readsFrom() const override { return Reads::camera; }
 };
 
 /// Stands for the voxelization of static geometry.
-class Voxels : public Toy {
- public:
+struct Voxels : Toy {
   using Toy::Toy;
   Param<int> resolution{this, "resolution", 8, {1, 64}, "voxels along each side"};
   Param<float> width{this, "width", 1.0f, {0.1f, 100.0f}, "m", "of the grid"};
@@ -118,8 +113,7 @@ class Voxels : public Toy {
 };
 
 /// Two outputs, one of which needs something glossy.
-class Gather : public Toy {
- public:
+struct Gather : Toy {
   using Toy::Toy;
   In<RadianceGrid> grid{this, "grid", "radiance"};
   In<Image> view{this, "view", Presence::optional, "what the camera sees"};
@@ -137,8 +131,7 @@ class Gather : public Toy {
 };
 
 /// The sum of a required and an optional image.
-class Add : public Toy {
- public:
+struct Add : Toy {
   using Toy::Toy;
   In<Image> first{this, "first", "one term"};
   In<Image> second{this, "second", Presence::optional, "another term"};
@@ -149,8 +142,7 @@ class Add : public Toy {
   }
 };
 
-class Fog : public Toy {
- public:
+struct Fog : Toy {
   using Toy::Toy;
   Out<Image> scattered{this, "scattered", Contributes::scattered};
   Needs needs() const override { return Needs::medium; }
@@ -194,32 +186,45 @@ inline TestTechniques& addToys(TestTechniques& techniques) {
   return techniques;
 }
 
-/// Null after saying that the test does not apply here.
-inline std::unique_ptr<gpu::Device> deviceOrSkip() {
-  try {
-    return std::make_unique<gpu::Device>();
-  } catch (const AbsentError& absent) {
-    skip(absent.what());
-    return nullptr;
-  }
-}
-
 inline Pipeline pipelineOf(const std::string& body) {
   return Pipeline::parse("pipeline \"test\" {\n" + body + "\n}\n", "test.pipeline");
 }
 
-/// Toys on a device, if there is one.
+/// Toys on a device of their own.
 struct Fixture {
-  std::unique_ptr<gpu::Device> device = deviceOrSkip();
+  std::unique_ptr<gpu::Device> device = std::make_unique<gpu::Device>();
   TestTechniques techniques;
   Scene scene = triangleScene();
-  explicit operator bool() const { return device != nullptr; }
 
   Fixture() { addToys(techniques); }
   PipelineExecutor executor(const std::string& body, RenderOptions options = {}) {
     return PipelineExecutor(*device, techniques, scene, pipelineOf(body), options);
   }
 };
+
+/// Options with these flags on.
+template <class... Flags>
+RenderOptions with(Flags... flags) {
+  RenderOptions options;
+  ((options.*flags = true), ...);
+  return options;
+}
+
+using Ran = std::vector<std::string>;
+
+inline const LeftOut* find(const Explanation& explanation, LeftOut::Level level, const std::string& what) {
+  for (const LeftOut& one : explanation.leftOut)
+    if (one.level == level && one.what.rfind(what, 0) == 0) return &one;
+  return nullptr;
+}
+
+/// Why something was left out; empty: it was not.
+inline std::string whyLeftOut(const PipelineExecutor& executor, LeftOut::Level level,
+                              const std::string& what) {
+  const Explanation explanation = executor.explain();
+  const LeftOut* const one = find(explanation, level, what);
+  return one == nullptr ? "" : one->why;
+}
 
 /// The first value of an output's image.
 inline float first(const FrameResult& frame, const std::string& output) {
