@@ -166,7 +166,7 @@ TEST_CASE("with 4096 paths a pixel all light of the boxes is met within 0.3 %", 
 
 namespace {
 
-/// Indirect light of the pipeline without smoothing, so that what is left of the error is bias and noise.
+/// Of the pipeline.
 Against errorOf(const Scene& scene, const Picture& picture, int samples, int bounces,
                 const std::string& layer, const std::string& output = "indirect_diffuse") {
   ReferenceOptions options = quietly(picture.referenceSamples, 32);
@@ -177,7 +177,7 @@ Against errorOf(const Scene& scene, const Picture& picture, int samples, int bou
   const LayeredImage reference = cachedReference(scene, options);
   const Pipeline text = pipeline("voxel_path_tracing");
   const FrameResult frame = pictured(
-      scene, {side, side}, text,
+      scene, picture, text,
       {"resolution=128", "samples=" + std::to_string(samples), "bounces=" + std::to_string(bounces)});
   return against(reference, frame.outputs.at(output), layer, 0.0f);
 }
