@@ -85,7 +85,12 @@ uvec4 noiseOf(ivec2 at, int fromSurface, int use) {
 // of a single bounce do; further ones are independent of it, or paths would see only pairs of directions that the sequence makes.
 Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   uvec4 noise = noiseOf(at, fromSurface, 0);
-  vec2 point = unitInterval(fromSurface == 0 ? wordsOfR2(number, hash4(uvec4(at, seed)).xy) : noise.xy);
+  if (fromSurface == 0) {
+    // Which lobe it is follows the multiples of the golden ratio, so that each lobe gets its share of few paths too.
+    uvec4 turn = hash4(uvec4(at, seed));
+    noise = uvec4(wordsOfR2(number, turn.xy), number * 2654435769u + turn.z, 0u);
+  }
+  vec2 point = unitInterval(noise.xy);
   vec3 tangent = tangentTo(surface.normal), bitangent = cross(surface.normal, tangent);
   Choice result = Choice(cosineDirection(point, 1.0, tangent, bitangent, surface.normal), 1.0, 0.0);
 #if GLOSSY

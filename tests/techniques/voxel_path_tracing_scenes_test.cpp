@@ -194,8 +194,8 @@ TEST_CASE("paths of eight bounces show all of the Cornell box's indirect light")
 // The numbers of the card; minutes.
 TEST_CASE("errors of paths by bounces", "[.]") {
   KeptTable table("voxel_path_tracing.errors", {{"error", 3, 0.01}, {"ratio", 2, 0.01}});
-  const Picture picture{64, 64, 1024};
-  constexpr int kSamples = 512;
+  const Picture picture{48, 48, 1024};
+  constexpr int kSamples = 256;
   const auto row = [&](const char* name, const Scene& scene, int bounces, const char* layer,
                        const char* output) {
     const Against found = errorOf(scene, picture, kSamples, bounces, layer, output);
