@@ -1,6 +1,6 @@
 #version 450
-// Light is carried from a surface of each path to the one before it, as published (thesis Gomes 2015, Sec. 3.2.4): one layer of the textures
-// of record.comp. From the first surface it arrives at the visible one.
+// Light is carried from a surface of each path to the one before it, as published (thesis Gomes 2015, Sec. 3.2.4): one layer of the
+// textures of record.comp. From the first surface it arrives at the visible one.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED

@@ -1,5 +1,5 @@
-// Paths from surface to surface through bits: Thiedemann, Henrich, Grosch & Mueller 2011; thesis Gomes 2015, Sec. 3.2.4. Bits say where a ray
-// ends. Reflective shadow maps say how bright it is there, and what reflects it; in shadow the voxels' averages do.
+// Paths from surface to surface through bits: Thiedemann, Henrich, Grosch & Mueller 2011; thesis Gomes 2015, Sec. 3.2.4. Bits say where a
+// ray ends. Reflective shadow maps say how bright it is there, and what reflects it; in shadow the voxels' averages do.
 #pragma lumivox axis MAP 0 1
 #pragma lumivox axis GLOSSY 0 1      // surfaces have a Phong lobe
 #pragma lumivox axis ATTRIBUTES 0 1  // paths go on from surfaces in shadow
@@ -81,8 +81,8 @@ uvec4 noiseOf(ivec2 at, int fromSurface, int use) {
   return hash4(uvec4(uint(at.x) | uint(at.y) << 16u, number, uint(2 * fromSurface + use), seed.x ^ (seed.y * 2654435769u)));
 }
 
-// One direction of the sum of both lobes, weighed by the density of their mixture (Veach 1997, Sec. 9.2.4). The first one follows R2, as rays
-// of a single bounce do; further ones are independent of it, or paths would see only pairs of directions that the sequence makes.
+// One direction of the sum of both lobes, weighed by the density of their mixture (Veach 1997, Sec. 9.2.4). The first one follows R2, as
+// rays of a single bounce do; further ones are independent of it, or paths would see only pairs of directions that the sequence makes.
 Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   uvec4 noise = noiseOf(at, fromSurface, 0);
   if (fromSurface == 0) {

@@ -1,6 +1,6 @@
 #version 450
-// One ray of one path for each pixel, with what the path is known by: where its next ray begins and goes, and what its light is multiplied by.
-// Light is added as it is met.
+// One ray of one path for each pixel, with what the path is known by: where its next ray begins and goes, and what its light is multiplied
+// by. Light is added as it is met.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED
