@@ -148,7 +148,7 @@ const std::map<std::string, std::vector<std::string>> kCases = {
     {"imperfect volumes by propagation", {"imperfect_volumes_propagation"}},
     {"implicit visibility", {"implicit_visibility", "implicit_visibility_lights"}},
     {"light propagation volumes", {"light_propagation_volumes", "light_propagation_volumes_voxels"}},
-    {"near field voxels", {"near_field_voxels", "near_field_voxels_occlusion"}},
+    {"near field voxels", {"near_field_voxels", "near_field_voxels_occlusion", "voxel_path_tracing"}},
     {"media", {"volumetric_smoke"}},
     {"dense grids", {"voxel_cone_tracing", "voxel_cone_tracing_lobes", "voxel_cone_tracing_soft_shadows"}},
     {"a lens", {"voxel_cone_tracing_depth_of_field"}},
