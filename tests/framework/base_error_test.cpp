@@ -143,13 +143,13 @@ TEST_CASE("the nearest word is the one that the whole table of edit distances fi
 }
 
 TEST_CASE("facts of a message are whole words and numbers in their order") {
-  const std::string text = "a.scene:3:5: 'width' is 0.5, not -2 in 1..64; expected size_2";
+  const std::string text = "a.scene:3:7: 'width' is 0.5, not -2 in 1..64; expected size_2";
   using test::Tells;
-  CHECK_THAT(text, Tells("a.scene:3:5", "width", 0.5, -2, 1, 64, "size_2"));
+  CHECK_THAT(text, Tells("a.scene:3:7", "width", 0.5, -2, 1, 64, "size_2"));
   CHECK_THROWS_MATCHES(throw Error(text), Error, Tells("a.scene:3", 0.5));
   for (const char* absent : {"widt", "idth", "5", "2", "4", "size", "a.scen"})
     CHECK_THAT(text, !Tells(absent));
-  CHECK_THAT(text, !Tells(0) && !Tells("width", "a.scene:3:5") && !Tells("width", "width"));
+  CHECK_THAT(text, !Tells(0) && !Tells("width", "a.scene:3:7") && !Tells("width", "width"));
   CHECK_THAT(text + "\n  width height\n  ^",
              !Tells("height") && !Tells("^"));  // the source line and its caret
 }

@@ -264,8 +264,9 @@ TEST_CASE("a checked block gives names, kinds and numbers in base units") {
 }
 
 TEST_CASE("a description names meaning, unit, range and default, wherever the word occurs") {
-  CHECK_THAT(describe(grammar(), "fov"),
-             Tells("scene > camera", "meaning of fov", "1 deg", "179 deg", "required"));
+  const std::string fov = describe(grammar(), "fov");
+  for (const char* fact : {"scene > camera", "meaning of fov", "1 deg", "179 deg", "required"})
+    CHECK_THAT(fov, Catch::Contains(fact));
   CHECK_THAT(describe(grammar(), "light"), Tells("light [NAME] point|spot { ... }", "light spot:"));
   CHECK(describe(grammar(), "nonsense").empty());
 }

@@ -245,7 +245,7 @@ TEST_CASE("a point of another process is not claimed until it is stored, release
   const auto file = directory.path() / "results.sqlite";
   ResultsStore store(file);
   const std::string key = runNumber(1).identity.key();
-  const auto claimed = [&] { return store.claim({key}).front(); };
+  const auto claimed = [&]() -> bool { return store.claim({key}).front(); };
   {
     Claimant other(file, key);
     CHECK(other.claimed);

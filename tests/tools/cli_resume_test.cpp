@@ -270,7 +270,7 @@ TEST_CASE("of two reports at once on one page the first to end takes no point fr
   CHECK_FALSE(std::filesystem::exists(checkpoint));
   const Json points = place.sceneOf("page.json").at("points");
   CHECK(points.size() == 9);
-  for (const Json& point : points) CHECK_FALSE(point.contains("failure"));
+  for (const Json& point : points) CHECK(point.at("failure") == "");
 }
 
 TEST_CASE("two reports of the same points at once share them, and both pages are whole") {
@@ -325,7 +325,7 @@ TEST_CASE("a point that fails while it is timed is a row that says why, and the 
   CHECK(points[0].at("failure") == "pass paint: the pass is tired; expected fewer frames");
   CHECK(points[0].at("errors").empty());
   CHECK(points[0].at("passes").empty());
-  CHECK_FALSE(points[1].contains("failure"));
+  CHECK(points[1].at("failure") == "");
   CHECK(points[1].at("errors").size() > 0);
   CHECK(contains(place.read("page.html"), "pass paint: the pass is tired; expected fewer frames"));
   CHECK(contains(place.read("page.csv"), "pass paint: the pass is tired; expected fewer frames"));
