@@ -238,7 +238,7 @@ TEST_CASE("every peak rate of this device is measured, with the right results", 
     CHECK_FALSE(one.unit.empty());
   }
   options.names = {"texture_sampling"};
-  CHECK_THROWS_MATCHES(measurePeakRates(device(), options), Error, Tells("texture_samples_d2"));
+  CHECK_THROWS_MATCHES(measurePeakRates(device(), options), Error, Tells("texture_samples_d2_rgba8_nearest"));
 }
 
 TEST_CASE("a pass's work is counted with its loops and branches, and its image stays the same bit for bit") {
