@@ -18,7 +18,7 @@ TEST_CASE("a shader finds the same bin of a direction, and the same middle of a 
     directions.emplace_back(x, y, z, 0.0f);
     numbers.emplace_back(static_cast<float>(i), 0.0f, 0.0f, 0.0f);
   }
-  const std::vector<std::string> files{"implicit_visibility/direction_bins.glsl"};
+  const std::vector<std::string> files{"implicit_visibility/links/direction_bins.glsl"};
   for (const BinMapping mapping : {BinMapping::even, BinMapping::uniform})
     for (const int side : {1, 8, 12}) {
       const DirectionBins bins(side, mapping);
