@@ -470,7 +470,7 @@ TEST_CASE("soft shadows, and what a lens sees, are through every store what they
   // A lamp in six grids shines to the side that it faces alone, and voxels have edges: of its light, which is
   // nearly all that the lens sees, a tenth lies elsewhere (of the octree's of six faces 0.107).
   for (const Way& way :
-       {Way{"voxel_cone_tracing.soft_shadows { gbuffer gbuffer  lights lights.lights ", "", 0.003, 0.02},
+       {Way{"voxel_cone_tracing.soft_shadows { gbuffer gbuffer  lights lights.lights ", "", 0.003, 0.04},
         Way{"voxel_cone_tracing.lens { ", "shadow shadow.depth  emission on", 0.12, 1.0}}) {
     const ImageBuffer one = directLight(scene, way.tracing, way.injecting, nullptr);
     for (const Store& store : kStores) {

@@ -318,32 +318,6 @@ TEST_CASE("the solid volume of a scanned model is that of its mesh") {
   CHECK(solid.volume() == Approx(volume).epsilon(0.005));
 }
 
-TEST_CASE("the view shows cubes where voxels are, and the cut lays their inside open") {
-  // A box of 2 m seen from 4 m away: its front, at 3 m, fills 2 / (2 * 3 * tan(fov / 2)) of the image's
-  // side.
-  Scene scene = sceneOf({boxMesh({-1, -1, -1}, {1, 1, 1})});
-  Camera& camera = scene.cameras.front();
-  camera.eye = {0, 0, 4};
-  camera.fov = 1.0;
-  camera.width = camera.height = 64;
-  const VoxelFragments solid =
-      LonePass("voxelization.solid", scene, {{"resolution", 34}}).out<VoxelFragments>("fragments");
-  const auto brightPixels = [&](double cut, float brightness) {
-    const std::vector<float> values =
-        LonePass("voxelization.view", scene, {{"cut", cut}}).in("fragments", solid).floats("image");
-    int count = 0;
-    for (std::size_t i = 0; i < values.size(); i += 4) count += std::abs(values[i] - brightness) < 1e-4f;
-    return count;
-  };
-  const auto sidePixels = [](double distance) { return 64.0 * 2.0 / (2.0 * distance * std::tan(0.5)); };
-  constexpr float kCut = 0.95f, kBackground = 0.02f;
-  CHECK(brightPixels(0.0, kCut) == 0);
-  CHECK(std::sqrt(64.0 * 64.0 - brightPixels(0.0, kBackground)) == Approx(sidePixels(3.0)).margin(1.5));
-  // Cut in its middle the box is white to its rim.
-  CHECK(std::sqrt(brightPixels(4.0, kCut)) == Approx(sidePixels(4.0)).margin(1.5));
-  CHECK(brightPixels(6.0, kBackground) == 64 * 64);
-}
-
 TEST_CASE("nothing has no inside") {
   CHECK(solidOf(SceneBuilder().scene, 16).cells.empty());
   Mesh line = boxMesh({0, 0, 0}, {1, 0, 0});

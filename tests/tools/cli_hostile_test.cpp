@@ -1,4 +1,5 @@
 // Numbers, names and texts that nobody means: refused with a sentence, before any work, and soon.
+#include <algorithm>
 #include <chrono>
 
 #include "lumivox/base/image.h"
@@ -248,7 +249,9 @@ TEST_CASE("a medium that no pass reads is said by render and by explain, and not
   const CommandResult clear = made("render", "voxel_cone_tracing", "--set resolution=16 -o", place / "a.png");
   CHECK_THAT(clear.errors, Tells("leaves out", "medium", "fog", "clear air"));
   CHECK_FALSE(contains(clear.errors, "leaves out the"));
-  CHECK_THAT(made("explain --no-times", "voxel_cone_tracing", "--set resolution=16 --json").output,
-             Tells("medium", "fog"));
+  const nlohmann::json explained = nlohmann::json::parse(
+      made("explain --no-times", "voxel_cone_tracing", "--set resolution=16 --json").output);
+  CHECK(std::any_of(explained["left_out"].begin(), explained["left_out"].end(),
+                    [](const nlohmann::json& one) { return one["what"] == "medium 'fog'"; }));
   CHECK_FALSE(contains(made("render", "volumetric_smoke", "-o", place / "b.png").errors, "leaves out"));
 }

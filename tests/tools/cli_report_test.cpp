@@ -157,7 +157,7 @@ TEST_CASE("a report shows and judges all images of a scene at one exposure, and 
                                             exposure, scene.at("reference").at("tone").get<std::string>())));
     for (const auto& layer : scene.at("reference").at("layers")) CHECK(layer.at("exposure_ev") == exposure);
     for (const auto& error : scene.at("points").at(0).at("errors"))
-      CHECK(error.at("exposure_ev") == exposure);
+      CHECK(error.at("metrics").at("exposure_ev").at("value") == exposure);
     for (const auto& record : parseCsv(place.read("out/page.csv")))
       CHECK(std::stod(record.at("exposure_ev")) == exposure);
     return scene;

@@ -62,12 +62,12 @@ TEST_CASE(
 TEST_CASE("every committed scene and pipeline passes check") {
   if (!std::filesystem::exists(sourceDirectory() / "../shared/models"))
     return skip("the models of some scenes are not on this machine");
-  const std::string scenes = (sourceDirectory() / "scenes").string();
-  const CommandResult pipelines = typed("check", scenes, "/pipelines/*.pipeline");
+  const std::string scenes = "'" + (sourceDirectory() / "scenes").string() + "'";
+  const CommandResult pipelines = typed("check", Raw{scenes + "/pipelines/*.pipeline"});
   INFO(pipelines.errors);
   CHECK(pipelines.exitCode == 0);
   CHECK(pipelines.errors.empty());
-  const CommandResult texts = typed("check --json", scenes, "/*.scene", scenes, "/stress/*.scene");
+  const CommandResult texts = typed("check --json", Raw{scenes + "/*.scene"}, Raw{scenes + "/stress/*.scene"});
   INFO(texts.output << texts.errors);
   CHECK(texts.exitCode == 0);
   CHECK(texts.errors.empty());

@@ -187,7 +187,7 @@ const std::vector<PipelineCosts> kPipelines{
       {"glossy material",
        "pass average cones grid reflect; program average_add toolkit/claim toolkit/number "
        "average_resolve filter reflect; compose GLOSSY=1; gather DIFFUSE=0 ENVIRONMENT=0 FACES=one "
-       "GLOSSY=1 LOBES=0 LOOK_UP=own MEDIUM=none STORE=dense"},
+       "GLOSSY=1 LOBES=0 MEDIUM=none STORE=dense"},
       {"moving camera", "again compose gather"},
       {"moving object",
        "again compose gather inject lights propagate voxels; program count_behind; bytes voxels"},

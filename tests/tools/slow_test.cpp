@@ -122,7 +122,8 @@ TEST_CASE("every hidden test keeps a table, but for those that hold a closed for
       "a million rays find the same first voxel by every method",
       "light in a closed room of albedo 0.999 does not grow over a thousand bounces",
       "links grow as N log N with the number of elements, all pairs as its square",
-      "what arrives in a voxel is what quadrature over a hundred thousand directions finds"};
+      "what arrives in a voxel is what quadrature over a hundred thousand directions finds",
+      "with 4096 paths a pixel all light of the boxes is met within 0.3 %"};
   const std::vector<MeasuredTable> kept =
       readMeasuredTables(sourceDirectory() / "docs/benchmarks/measured_tables.json");
   const std::regex declared("KeptTable \\w+\\(\\s*\"([^\"]+)\"");
