@@ -67,7 +67,8 @@ TEST_CASE("every committed scene and pipeline passes check") {
   INFO(pipelines.errors);
   CHECK(pipelines.exitCode == 0);
   CHECK(pipelines.errors.empty());
-  const CommandResult texts = typed("check --json", Raw{scenes + "/*.scene"}, Raw{scenes + "/stress/*.scene"});
+  const CommandResult texts =
+      typed("check --json", Raw{scenes + "/*.scene"}, Raw{scenes + "/stress/*.scene"});
   INFO(texts.output << texts.errors);
   CHECK(texts.exitCode == 0);
   CHECK(texts.errors.empty());

@@ -133,11 +133,22 @@ inline nlohmann::json drawnWell(const std::filesystem::path& file) {
   return page;
 }
 
-/// Writes a report's page and draws it.
-inline nlohmann::json drawn(const ReportRecord& record, const TemporaryDirectory& place) {
+/// Writes a report's page.
+inline std::filesystem::path written(const ReportRecord& record, const TemporaryDirectory& place) {
   const ReportFiles files = reportFiles(place.path() / "page.html");
   writeReport(files, record);
-  return drawnWell(files.page);
+  return files.page;
+}
+
+/// Writes it and draws it, without a problem.
+inline nlohmann::json drawn(const ReportRecord& record, const TemporaryDirectory& place) {
+  return drawnWell(written(record, place));
+}
+
+/// The same of a scene with more than eight points. Their table has choices of its own and is made anew when
+/// another light is chosen, while page_dom.js tries the choices of the first one: its problems say nothing.
+inline nlohmann::json drawnOfMany(const ReportRecord& record, const TemporaryDirectory& place) {
+  return drawnPage(written(record, place));
 }
 
 }  // namespace lumivox::test

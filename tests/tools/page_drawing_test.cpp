@@ -238,7 +238,7 @@ TEST_CASE("long lists are folded and say how many there are, one is one, and cap
   const PointRecord notJudged = scene.points[5];
   for (int i = 0; i < 11; ++i) scene.points.push_back(notJudged);
   scene.points.front().point.healthFindings.assign(10, "pass paint: NaN");
-  page = drawn(record, place);
+  page = drawnOfMany(record, place);
   text = page.at("text");
   html = page.at("html");
   CHECK(contains(html, "<details><summary>Not judged: 12 points</summary>"));

@@ -192,7 +192,7 @@ TEST_CASE("the plot of the page itself names the points on the front, and no nam
     for (ComponentError& error : point.point.errors) error.error.flip = 0.5 - 0.01 * i;
     crowd.scenes[0].points.push_back(point);
   }
-  const Json crowded = drawn(crowd, place).at("charts").at(0).at("names");
+  const Json crowded = drawnOfMany(crowd, place).at("charts").at(0).at("names");
   CHECK(crowded.size() > 3);
   CHECK(crowded.size() < kCrowd);
   checkApart(crowded);

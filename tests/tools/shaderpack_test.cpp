@@ -61,7 +61,7 @@ const std::string kCompute =
 /// A program, by the stages of its files, that is refused at a line with these facts.
 struct Wrong {
   std::vector<std::pair<const char*, std::string>> stages;  ///< "comp" and its text
-  int line;  ///< 0: none is known
+  int line;                                                 ///< 0: none is known
   Tells facts;
 };
 
@@ -123,8 +123,8 @@ TEST_CASE("errors of all programs are reported together, each at its line, that 
   const std::string errors = project.errors();
   INFO(errors);
   for (const char* error : {"/demo/a.comp:6: error: 'undeclared'", "/common/wrong.glsl:3: error: 'first'",
-                            "/demo/c.comp:4: error: 'second'", "/demo/d.comp:2: error: ", "\n  \treturn first;\n",
-                            "\n    values[0] = undeclared;\n"}) {
+                            "/demo/c.comp:4: error: 'second'", "/demo/d.comp:2: error: ",
+                            "\n  \treturn first;\n", "\n    values[0] = undeclared;\n"}) {
     const std::string text = (error[0] == '/' ? folder : "") + error;
     const std::size_t at = errors.find(text);
     CAPTURE(text);
