@@ -35,7 +35,8 @@ class InjectPass : public Pass {
       "radiance of the largest byte, at which brighter voxels are clamped, W/(sr m^2); 0: that of the brightest fragment, which near a point light leaves all others dark"};
   Param<float> ambient{this, "ambient", 0.0f, within(0.0f, 1e9f),
                        "irradiance that all surfaces receive besides that of the lights, W/m^2 (Fig. 66)"};
-  Out<VoxelAverages> averages{this, "averages", "running averages, which depend on the order of the fragments"};
+  Out<VoxelAverages> averages{this, "averages",
+                              "running averages, which depend on the order of the fragments"};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
 
@@ -132,8 +133,9 @@ void addInject(TechniqueRegistry& registry) {
   registry.add<InjectPass>("inject", "Direct light into running averages of 8 bits (Listings 4.8 and 4.9)");
   registry.add<CorrectOpacityPass>("correct_opacity",
                                    "Opacities in place of the counts of fragments (Listing 4.10)");
-  registry.add<CorrectOpacityDirectionalPass>("correct_opacity_directional",
-                                              "Opacities in place of the counts of fragments, for six directional grids (Sec. 4.2.1, Table 1)");
+  registry.add<CorrectOpacityDirectionalPass>(
+      "correct_opacity_directional",
+      "Opacities in place of the counts of fragments, for six directional grids (Sec. 4.2.1, Table 1)");
 }
 
 }  // namespace lumivox::thesis_cone_tracing

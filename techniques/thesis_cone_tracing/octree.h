@@ -1,4 +1,5 @@
-// What passes over the octree share. GLSL side: shaders/thesis_cone_tracing/octree.glsl and octree_levels.glsl.
+// What passes over the octree share. GLSL side: shaders/thesis_cone_tracing/octree.glsl and
+// octree_levels.glsl.
 #pragma once
 
 #include "lumivox/plugin/technique.h"

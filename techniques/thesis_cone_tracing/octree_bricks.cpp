@@ -136,7 +136,8 @@ class OctreeRelightPass : public Pass {
   In<ReflectiveShadowMap> photons{this, "photons", Presence::optional,
                                   "what the lights see; without it the octree stays as it is"};
   In<OctreeBricks> octree{this, "octree", "surfaces, of which the opacity is kept", Levels::all};
-  In<VoxelFragments> fragments{this, "fragments", "the surface samples of the octree: their colours and normals"};
+  In<VoxelFragments> fragments{this, "fragments",
+                               "the surface samples of the octree: their colours and normals"};
   Out<OctreeBricks> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                              Levels::all};
 

@@ -1,5 +1,5 @@
-// A sparse voxel octree as printed (thesis Gomes 2015, Sec. 3.1.1 and 4.2.2; Crassin et al. 2011, Sec. 4): kinds
-// of ports of this technique's own.
+// A sparse voxel octree as printed (thesis Gomes 2015, Sec. 3.1.1 and 4.2.2; Crassin et al. 2011, Sec. 4):
+// kinds of ports of this technique's own.
 #pragma once
 
 #include <algorithm>
@@ -84,8 +84,8 @@ struct OctreeBricks {
     for (int level = 0; level < filledLevels; ++level)
       for (const OctreeNodes::Brick& brick : tree.bricksOf(level))
         for (int voxel = 0; voxel < OctreeNodes::kBrickVoxels; ++voxel) {
-          const glm::ivec3 at =
-              texelOf(brick.index) + glm::ivec3(voxel % kSide, voxel / kSide % kSide, voxel / (kSide * kSide));
+          const glm::ivec3 at = texelOf(brick.index) +
+                                glm::ivec3(voxel % kSide, voxel / kSide % kSide, voxel / (kSide * kSide));
           result.at(static_cast<std::size_t>((at.z * size.y + at.y) * size.x + at.x)) = true;
         }
     return result;
@@ -101,7 +101,8 @@ struct OctreeBricks {
         const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2), at = texelOf(brick.index) + local;
         const float* texel =
             texels.data() + 4 * static_cast<std::size_t>((at.z * size.y + at.y) * size.x + at.x);
-        const glm::vec3 value = component == 3 ? glm::vec3(texel[3]) : glm::vec3(texel[0], texel[1], texel[2]);
+        const glm::vec3 value =
+            component == 3 ? glm::vec3(texel[3]) : glm::vec3(texel[0], texel[1], texel[2]);
         if (texel[3] > 0.0f) result.push_back({2 * brick.place + local, value});
       }
     return result;

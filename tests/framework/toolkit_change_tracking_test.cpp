@@ -1,11 +1,10 @@
 // Which voxels what moves can change: those that it lies in, those that it left, and those that light reaches
 // past it.
-#include "lumivox/toolkit/change_tracking.h"
-
 #include <array>
 #include <set>
 
 #include "lumivox/toolkit/bit_tree.h"
+#include "lumivox/toolkit/change_tracking.h"
 #include "lumivox/toolkit/counts.h"
 #include "pipeline_toys.h"
 #include "support/scene_builder.h"
@@ -33,8 +32,8 @@ class Follower : public Toy {
 Scene floorAndPlate(float plateEmits = 0.0f) {
   SceneBuilder builder;
   builder.quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
-  builder.quad({-0.95f, -0.7f, -0.15f}, {0, 0, 0.3f}, {0.3f, 0, 0}, builder.lambert(0.5f, plateEmits)).motion =
-      RigidMotion{{0, 1, 0}, 0.0, {0, 0, 0}, {1, 0, 0}};
+  builder.quad({-0.95f, -0.7f, -0.15f}, {0, 0, 0.3f}, {0.3f, 0, 0}, builder.lambert(0.5f, plateEmits))
+      .motion = RigidMotion{{0, 1, 0}, 0.0, {0, 0, 0}, {1, 0, 0}};
   builder.light(LightKind::directional, glm::vec3(3.0f), {0, 0, 0}, {0, -1, 0});
   builder.look({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
   return builder.scene;
@@ -68,8 +67,8 @@ struct Moment {
     return result;
   }
   /// Fragments in these voxels. `still`: the count of static ones, kept from another list.
-  VoxelFragments list(const std::vector<glm::ivec3>& staticVoxels, const std::vector<glm::ivec3>& movingVoxels,
-                      gpu::BufferRef still = nullptr) {
+  VoxelFragments list(const std::vector<glm::ivec3>& staticVoxels,
+                      const std::vector<glm::ivec3>& movingVoxels, gpu::BufferRef still = nullptr) {
     std::vector<FragmentData> fragments;
     for (const auto& voxels : {staticVoxels, movingVoxels})
       for (const glm::ivec3& voxel : voxels) {
@@ -142,8 +141,7 @@ std::set<std::uint32_t> expectedFragments(const std::vector<glm::ivec3>& staticV
   std::set<std::uint32_t> result;
   for (std::size_t i = 0; i < staticVoxels.size(); ++i)
     if (cells.contains(cellOf(staticVoxels[i]))) result.insert(static_cast<std::uint32_t>(i));
-  for (std::size_t i = 0; i < moving; ++i)
-    result.insert(static_cast<std::uint32_t>(staticVoxels.size() + i));
+  for (std::size_t i = 0; i < moving; ++i) result.insert(static_cast<std::uint32_t>(staticVoxels.size() + i));
   return result;
 }
 
@@ -153,7 +151,8 @@ std::set<Cell> together(std::set<Cell> a, const std::set<Cell>& b) {
 }
 
 // Static fragments, several in a cell and far from each other; and three places of what moves.
-const std::vector<glm::ivec3> kStatic{{0, 0, 0}, {3, 3, 3}, {4, 0, 0}, {31, 31, 31}, {28, 31, 30}, {16, 2, 9}},
+const std::vector<glm::ivec3> kStatic{{0, 0, 0},    {3, 3, 3},    {4, 0, 0},
+                                      {31, 31, 31}, {28, 31, 30}, {16, 2, 9}},
     kHere{{1, 2, 0}, {17, 20, 5}}, kThere{{5, 1, 1}, {20, 20, 5}}, kElsewhere{{30, 30, 29}};
 
 }  // namespace
@@ -184,7 +183,8 @@ TEST_CASE("cells that something has left have changed as well, and each frame is
   CHECK(takenFragments(twice) == expectedFragments(kStatic, kElsewhere.size(), expected));
 }
 
-TEST_CASE("an invocation runs for each fragment in changed cells: none of another is listed twice or left out") {
+TEST_CASE(
+    "an invocation runs for each fragment in changed cells: none of another is listed twice or left out") {
   Moment f(floorAndPlate());
   // A whole cell of fragments, more than a work group has invocations, and one beside it.
   std::vector<glm::ivec3> voxels{{31, 0, 0}};

@@ -1,9 +1,9 @@
-// What the toolkit's own shaders count: dispatches over lists, sums of numbers before others, slots of voxels.
-#include "lumivox/toolkit/counts.h"
-
+// What the toolkit's own shaders count: dispatches over lists, sums of numbers before others, slots of
+// voxels.
 #include <map>
 #include <random>
 
+#include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/voxel_slots.h"
 #include "pipeline_toys.h"
 #include "support/voxel_fragments.h"
@@ -54,10 +54,10 @@ TEST_CASE("a finished count has the groups of a dispatch over what there is room
     std::uint32_t kept, x, y;
   };
   // Rows of 65535 groups, the last one too long; one group where there is nothing.
-  for (const Case& one : {Case{0, 10, 64, 0, 1, 1}, Case{1, 10, 64, 1, 1, 1}, Case{64, 100, 64, 64, 1, 1},
-                          Case{65, 100, 64, 65, 2, 1}, Case{65, 64, 64, 64, 1, 1}, Case{17, 100, 8, 17, 3, 1},
-                          Case{65535, 1u << 20, 1, 65535, 65535, 1},
-                          Case{65536, 1u << 20, 1, 65536, 65535, 2}}) {
+  for (const Case& one :
+       {Case{0, 10, 64, 0, 1, 1}, Case{1, 10, 64, 1, 1, 1}, Case{64, 100, 64, 64, 1, 1},
+        Case{65, 100, 64, 65, 2, 1}, Case{65, 64, 64, 64, 1, 1}, Case{17, 100, 8, 17, 3, 1},
+        Case{65535, 1u << 20, 1, 65535, 65535, 1}, Case{65536, 1u << 20, 1, 65536, 65535, 2}}) {
     CAPTURE(one.items, one.capacity, one.itemsOfGroup);
     const gpu::BufferRef count = countBuffer(f.frame(), "count");
     CHECK(wordsOf(count, 5) == std::vector<std::uint32_t>(5, 0));
@@ -81,10 +81,9 @@ TEST_CASE("a scan puts the sum of the numbers before in place of each number, co
       }
       for (const bool withTotals : {false, true}) {
         const gpu::BufferRef buffer = f.frame().uploaded(numbers, "numbers"),
-                             totals = withTotals
-                                          ? f.frame().uploaded(std::vector<std::uint32_t>(columns + 1, 99),
-                                                               "totals")
-                                          : nullptr;
+                             totals = withTotals ? f.frame().uploaded(
+                                                       std::vector<std::uint32_t>(columns + 1, 99), "totals")
+                                                 : nullptr;
         scan(f.frame(), buffer, items, static_cast<int>(columns), totals);
         CHECK(wordsOf(buffer, numbers.size()) == expected);
         if (!withTotals) continue;

@@ -27,14 +27,15 @@ struct StoreKind {
     return {"layers", "interpolated"};
   }
 };
-inline const std::vector<StoreKind> kStoreKinds{{StoreKind::Of::grid, "one grid"},
-                                            {StoreKind::Of::grid, "one grid of means", "average"},
-                                            {StoreKind::Of::coarseFaces, "coarse directional"},
-                                            {StoreKind::Of::faces, "six grids"},
-                                            {StoreKind::Of::octree, "octree"},
-                                            {StoreKind::Of::octree, "octree of means", "average"},
-                                            {StoreKind::Of::octreeFaces, "octree of six faces", "facing", 32},
-                                            {StoreKind::Of::clipmap, "clipmap", "facing", 32}};
+inline const std::vector<StoreKind> kStoreKinds{
+    {StoreKind::Of::grid, "one grid"},
+    {StoreKind::Of::grid, "one grid of means", "average"},
+    {StoreKind::Of::coarseFaces, "coarse directional"},
+    {StoreKind::Of::faces, "six grids"},
+    {StoreKind::Of::octree, "octree"},
+    {StoreKind::Of::octree, "octree of means", "average"},
+    {StoreKind::Of::octreeFaces, "octree of six faces", "facing", 32},
+    {StoreKind::Of::clipmap, "clipmap", "facing", 32}};
 
 /// By the middle of a voxel, its width (m) and its face: radiance multiplied by the opacity, in w.
 using StoreFill = std::function<glm::vec4(const glm::vec3& middle, float width, int face)>;

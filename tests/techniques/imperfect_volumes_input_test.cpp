@@ -77,7 +77,8 @@ TEST_CASE("lengths, bounces and volumes that are too large are refused with what
   LonePass march = volumePass("march", underSky(1.0)), occlude = volumePass("occlude", underSky(1.0));
   march.in("reflected", small.reflected()).in("attributes", small.attributes());
   for (LonePass* pass : {&march, &occlude})
-    CHECK_THROWS_MATCHES(pass->in("opacity", opacity).run(), Error, Tells("1024 x 1024 x 1024", "16.0", "2^29"));
+    CHECK_THROWS_MATCHES(pass->in("opacity", opacity).run(), Error,
+                         Tells("1024 x 1024 x 1024", "16.0", "2^29"));
 }
 
 TEST_CASE("what a choice of words reads must be connected, and is told by name") {

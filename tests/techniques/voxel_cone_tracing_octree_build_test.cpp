@@ -164,9 +164,9 @@ TEST_CASE("the octree takes the share of the dense grid's memory that the card s
     int resolution;
     double share;  // of the bytes of the dense grid with its mips
   };
-  for (const Claim& claim : {Claim{"cornell", 64, 0.305}, Claim{"cornell", 128, 0.166},
-                             Claim{"cornell", 256, 0.087}, Claim{"arcade", 128, 0.458},
-                             Claim{"arcade", 256, 0.268}}) {
+  for (const Claim& claim :
+       {Claim{"cornell", 64, 0.305}, Claim{"cornell", 128, 0.166}, Claim{"cornell", 256, 0.087},
+        Claim{"arcade", 128, 0.458}, Claim{"arcade", 256, 0.268}}) {
     const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
     PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshotOf(scene, 0.0));
     voxels.setParameter("resolution", claim.resolution);

@@ -42,4 +42,3 @@ TEST_CASE("six faces are refused by rules that have no sides") {
   CHECK_THROWS_WITH(filteredOctree(leavesOf(list, "float", "six"), "average"),
                     Catch::Matchers::Contains("expected 'opacity facing'"));
 }
-

@@ -215,7 +215,8 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
   CHECK(dependent("techniques/shading/a.cpp", include("lumivox/experiment/report.h")) == 1);
   CHECK(dependent("techniques/shading/a.cpp",
                   include("shading_shaders.h") + include("lumivox/pipeline/pass.h")) == 0);
-  CHECK(dependent("shaders/shading/a.comp", include("common/brdf.glsl") + include("toolkit/slots.glsl")) == 0);
+  CHECK(dependent("shaders/shading/a.comp", include("common/brdf.glsl") + include("toolkit/slots.glsl")) ==
+        0);
 
   const std::set<std::string> whole = {"techniques/shading/CMakeLists.txt",
                                        "techniques/shading/shading.cpp",

@@ -66,8 +66,7 @@ ChangedCells cellsOfMoving(PassContext& frame, const VoxelFragments& list) {
   ChangedCells result = cellsOver(list.grid);
   result.bits = frame.emptyElements(code::changed_mark::changedCells, wordsBeforeDepth(result.cellDepth + 1),
                                     "changed cells");
-  result.fragments =
-      frame.elements(code::changed_mark::changedFragments, list.capacity, "changed fragments");
+  result.fragments = frame.elements(code::changed_mark::changedFragments, list.capacity, "changed fragments");
   result.count = countBuffer(frame, "changed fragment count");
   forEachFragment(frame, frame.program(code::changed_mark::Variant{.moving = 1}),
                   {listing(result), bindStaticCount(list)}, movingOf(list));
@@ -79,15 +78,14 @@ void markLit(PassContext& frame, const VoxelFragments& list, const CellFragments
              const In<ShadowMap>& shadow, const std::vector<Bounds>& moving, const ChangedCells& result) {
   const BoxesInViews boxes(frame, shadow, moving);
   const int voxels = 1 << (result.voxelDepth - result.cellDepth);
-  frame.dispatchList(
-      frame.program(code::changed_lit::kProgram),
-      {code::changed_lit::cells({.gridLow = list.grid.low,
-                                 .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
-                                 .boxCount = boxes.count,
-                                 .lightCount = boxes.lightCount,
-                                 .texel = boxes.texel}),
-       code::changed_lit::cellEnds(still.ends), boxes.bindings(), result.bindings()},
-      countOf(result));
+  frame.dispatchList(frame.program(code::changed_lit::kProgram),
+                     {code::changed_lit::cells({.gridLow = list.grid.low,
+                                                .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
+                                                .boxCount = boxes.count,
+                                                .lightCount = boxes.lightCount,
+                                                .texel = boxes.texel}),
+                      code::changed_lit::cellEnds(still.ends), boxes.bindings(), result.bindings()},
+                     countOf(result));
 }
 
 }  // namespace

@@ -28,10 +28,10 @@ gpu::BufferRef countBuffer(PassContext& frame, const char* label) {
 }
 
 void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity, int itemsOfGroup) {
-  frame.dispatch(frame.program(code::finish::kProgram),
-                 {code::finish::count(count),
-                  code::finish::finish({static_cast<std::int32_t>(capacity), itemsOfGroup})},
-                 {1, 1, 1});
+  frame.dispatch(
+      frame.program(code::finish::kProgram),
+      {code::finish::count(count), code::finish::finish({static_cast<std::int32_t>(capacity), itemsOfGroup})},
+      {1, 1, 1});
 }
 
 void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
@@ -49,11 +49,10 @@ void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_
 
 void scan(PassContext& frame, const gpu::BufferRef& numbers, std::uint64_t items, int columns,
           const gpu::BufferRef& totals) {
-  frame.dispatch(
-      frame.program(code::scan::Variant{.totals = totals != nullptr}),
-      {code::scan::scan({static_cast<std::uint32_t>(items), static_cast<std::uint32_t>(columns)}),
-       code::scan::numbers(numbers), code::scan::totals(totals)},
-      {1, 1, 1});
+  frame.dispatch(frame.program(code::scan::Variant{.totals = totals != nullptr}),
+                 {code::scan::scan({static_cast<std::uint32_t>(items), static_cast<std::uint32_t>(columns)}),
+                  code::scan::numbers(numbers), code::scan::totals(totals)},
+                 {1, 1, 1});
 }
 
 }  // namespace lumivox

@@ -83,8 +83,9 @@ class ClipmapPass : public Pass {
 
   DirectLight light{this};
   Param<int> resolution{this, "resolution", 64, within(8, 512), "voxels along each side of a level"};
-  Param<int> levels{this, "levels", 3, within(1, 10),
-                    "number of levels around the camera; each has voxels twice as large as the one inside it"};
+  Param<int> levels{
+      this, "levels", 3, within(1, 10),
+      "number of levels around the camera; each has voxels twice as large as the one inside it"};
   Param<float> extent{
       this, "extent",
       0.0f, within(0.0f, 1e9f),
@@ -92,12 +93,13 @@ class ClipmapPass : public Pass {
   Param<Coverage> coverage{
       this, "coverage", Coverage::touched,
       "coverage of a voxel; touched: each voxel that a triangle touches, as in the other stores; samples: opacity by eight samples of each side of a voxel, and emittance by more where a triangle is small, as published"};
-  Param<float> thickness{
-      this, "thickness", 0.5f, within(0.0f, 1.0f),
-      "with 'samples': thickness of a surface seen from the side, in voxels; 0: none"};
-  Param<int> supersampling{this, "supersampling", 4, within(1, 16),
-                           "with 'samples': largest number of pixels along a voxel for triangles that few samples hit, rounded down to a power of two; 1: no supersampling"};
-  Param<Precision> precision{this, "precision", Precision::float_, "numbers in the voxels; float: 16 bytes a face; half: 8"};
+  Param<float> thickness{this, "thickness", 0.5f, within(0.0f, 1.0f),
+                         "with 'samples': thickness of a surface seen from the side, in voxels; 0: none"};
+  Param<int> supersampling{
+      this, "supersampling", 4, within(1, 16),
+      "with 'samples': largest number of pixels along a voxel for triangles that few samples hit, rounded down to a power of two; 1: no supersampling"};
+  Param<Precision> precision{this, "precision", Precision::float_,
+                             "numbers in the voxels; float: 16 bytes a face; half: 8"};
   Out<RadianceClipmap> radiance{this, "radiance",
                                 "radiance that the faces of voxels reflect, and opacity; levels as voxelized",
                                 Levels::finest};
@@ -420,8 +422,9 @@ class ClipmapFilterPass : public Pass {
   Param<float> border{
       this, "border", 0.25f, within(0.0f, 1.0f),
       "width of the transition of cones to the next coarser level, as a share of the same distance; 0: within a voxel"};
-  Out<RadianceClipmap> mips{
-      this, "mips", "the same levels; inside the next finer level, their voxels come from its voxels", Levels::all};
+  Out<RadianceClipmap> mips{this, "mips",
+                            "the same levels; inside the next finer level, their voxels come from its voxels",
+                            Levels::all};
 
   /// The change up to which the blocks of these volumes are made.
   struct Made {

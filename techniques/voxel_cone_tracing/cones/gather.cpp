@@ -20,20 +20,23 @@ class GatherPass : public Pass {
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   StoreInput store{this};
-  In<NormalLobes> lobes{this, "lobes", Presence::optional,
-                        "beside 'grid': directions into which its voxels reflect; without them voxels are isotropic"};
+  In<NormalLobes> lobes{
+      this, "lobes", Presence::optional,
+      "beside 'grid': directions into which its voxels reflect; without them voxels are isotropic"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that attenuate the cones; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
-  Param<int> glossyCones{this, "glossy_cones", 4, within(1, 64),
-                         "cones per pixel that share the Phong lobe; 1: one cone as wide as the lobe, as published"};
+  Param<int> glossyCones{
+      this, "glossy_cones", 4, within(1, 64),
+      "cones per pixel that share the Phong lobe; 1: one cone as wide as the lobe, as published"};
   Param<Distribution> distribution{
       this, "distribution", Distribution::cosine,
       "diffuse cones; cosine: of equal weight, distributed as the cosine; published: one along the normal and four at 45 degrees"};
-  Param<float> coneRatio{this, "cone_ratio",
-                         1.15470053837925152902f,  // 2 tan 30 degrees
-                         within(0.01f, 8.0f),
-                         "diameter over height of a cone with 'distribution published'; no number is published"};
+  Param<float> coneRatio{
+      this, "cone_ratio",
+      1.15470053837925152902f,  // 2 tan 30 degrees
+      within(0.01f, 8.0f),
+      "diameter over height of a cone with 'distribution published'; no number is published"};
   Param<int> pattern{
       this, "pattern", 4, within(1, 8),
       "side of a square of pixels whose cones have different directions; a joint bilateral filter of this width averages them, which acts as that many more cones; 1: each pixel by itself, as published"};

@@ -78,9 +78,11 @@ class SoftShadowsPass : public Pass {
       "meaning of a voxel's opacity; surfaces: a closed surface blocks all light; medium: a medium, as for the other cones, which with trilinear reading lets exp(-2) = 0.14 of the light through a sheet"};
   Param<float> step{this, "step", 0.125f, within(0.05f, 2.0f),
                     "step along a cone as a share of its diameter"};
-  Param<float> offset{this, "offset", 1.5f, within(0.0f, 8.0f),
-                      "distance of a cone's start along the normal, and of its end before an area light, in voxels"};
-  Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f), "distance of a cone's start along its axis, in voxels"};
+  Param<float> offset{
+      this, "offset", 1.5f, within(0.0f, 8.0f),
+      "distance of a cone's start along the normal, and of its end before an area light, in voxels"};
+  Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f),
+                     "distance of a cone's start along its axis, in voxels"};
   Param<float> clearance{
       this, "clearance", 1.0f / 3.0f, within(0.0f, 1e3f),
       "largest voxel that is read, as a share of its height over the surface and over an area light's surface; above a third voxels reach that surface"};

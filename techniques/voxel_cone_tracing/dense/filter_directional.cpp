@@ -56,8 +56,9 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
 class FilterDirectionalPass : public Pass {
   In<DirectionalRadianceGrid> radiance{this, "radiance", Presence::optional,
                                        "the finest level of six grids (thesis Table 1: six full grids)"};
-  In<RadianceGrid> finest{this, "finest", Presence::optional,
-                          "in place of 'radiance': an isotropic finest level, so that only coarser levels have six grids (thesis Sec. 3.1.3)"};
+  In<RadianceGrid> finest{
+      this, "finest", Presence::optional,
+      "in place of 'radiance': an isotropic finest level, so that only coarser levels have six grids (thesis Sec. 3.1.3)"};
   Out<DirectionalRadianceGrid> mips{this, "mips", "the same with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {

@@ -51,7 +51,8 @@ class Injection {
         storeMedia_(
             pass, "store_media", false,
             "voxels store media beside surfaces and scatter light isotropically, so that one set of cones sees both, and 'gather' needs no 'media' (thesis Sec. 4.5)"),
-        precision_(pass, "precision", Precision::float_, "numbers in the grid; float: 16 bytes a voxel; half: 8") {}
+        precision_(pass, "precision", Precision::float_,
+                   "numbers in the grid; float: 16 bytes a voxel; half: 8") {}
 
   /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
   /// fit, nothing of it is taken, and the Error says what would.
@@ -310,8 +311,9 @@ class Injection {
 class InjectPass : public Pass {
   Injection injection{this};
   Bounces bounces{this};
-  Param<bool> mips{this, "mips", true,
-                   "allocate the coarser levels that 'filter' fills; 'filter_directional' does not need them"};
+  Param<bool> mips{
+      this, "mips", true,
+      "allocate the coarser levels that 'filter' fills; 'filter_directional' does not need them"};
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                              Levels::finest};
 

@@ -42,8 +42,9 @@ class LookPass : public Pass {
   Param<bool> multiplied{this, "multiplied", false,
                          "values are already multiplied by the opacity, as radiance is"};
   Param<float> gain{this, "gain", 1.0f, within(0.0f, 1e9f), "factor of the emission"};
-  Param<Filter> filter{this, "filter", Filter::nearest,
-                       "reading of cells; nearest: as they are; trilinear: interpolated between their centres"};
+  Param<Filter> filter{
+      this, "filter", Filter::nearest,
+      "reading of cells; nearest: as they are; trilinear: interpolated between their centres"};
   Param<Cast> cast{
       this, "cast", Cast::ray,
       "ray: through the centre of each pixel; cone: through the whole pixel, by means over voxels as large as the pixel is there"};

@@ -101,8 +101,8 @@ class ChangeTracking {
   /// This moment, for what is made of static fragments alone.
   LitMoment momentOfStatic(PassContext& frame, const VoxelFragments& list);
   /// Cells in which this frame differs from what was made at a moment: those of moving fragments, now and
-  /// then, and those to which light comes past what moves, now or then. A moment of all fragments becomes this
-  /// one.
+  /// then, and those to which light comes past what moves, now or then. A moment of all fragments becomes
+  /// this one.
   ChangedCells since(PassContext& frame, const VoxelFragments& list, const In<ShadowMap>& shadow,
                      LitMoment& moment);
 
