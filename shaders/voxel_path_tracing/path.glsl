@@ -24,6 +24,7 @@ layout(std140, binding = 1) uniform Path {
   uint number;       // of the path of each pixel, over all frames that accumulate
   int bounce;        // surfaces that the path has left: 1 for the ray from the visible surface
   int bounces;       // at most
+  int raysAtOnce;    // that trace.comp follows, from that surface on
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;

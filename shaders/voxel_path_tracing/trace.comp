@@ -1,6 +1,6 @@
 #version 450
-// One ray of one path for each pixel, with what the path is known by: where its next ray begins and goes, and what its light is multiplied
-// by. Light is added as it is met.
+// Some rays of one path for each pixel, one after the other, with what the path is known by between dispatches: where its next ray begins
+// and goes, and what its light is multiplied by. Light is added as it is met.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED
@@ -29,7 +29,8 @@ void main() {
     direction = imageLoad(pathDirection, at);
     throughput = imageLoad(pathThroughput, at);
   }
-  if (throughput.w > 0.0) {
+  int last = min(bounce + raysAtOnce - 1, bounces);
+  for (int ray = bounce; ray <= last && throughput.w > 0.0; ++ray) {
     Meeting meeting = followed(start.xyz, direction.xyz);
     vec3 light = throughput.rgb * meeting.light;
 #if ARRIVING
@@ -39,15 +40,14 @@ void main() {
     addTo(kReflected, at, direction.w * light);
 #endif
     throughput.w = 0.0;
-    if (meeting.isSurface && bounce < bounces) {
-      Choice choice = chosen(at, meeting.surface, bounce);
-      start.xyz = startOf(meeting.surface, true);
-      direction.xyz = choice.direction;
-      throughput.rgb = survived(at, throughput.rgb * reflectedBy(meeting.surface, choice), bounce);
-      throughput.w = throughput.rgb == vec3(0.0) ? 0.0 : 1.0;
-    }
+    if (!meeting.isSurface || ray == bounces) break;
+    Choice choice = chosen(at, meeting.surface, ray);
+    start.xyz = startOf(meeting.surface, true);
+    direction.xyz = choice.direction;
+    throughput.rgb = survived(at, throughput.rgb * reflectedBy(meeting.surface, choice), ray);
+    throughput.w = throughput.rgb == vec3(0.0) ? 0.0 : 1.0;
   }
-  if (bounce == bounces) return;
+  if (last == bounces) return;
   imageStore(pathThroughput, at, throughput);
   if (!(throughput.w > 0.0)) return;
   imageStore(pathStart, at, start);

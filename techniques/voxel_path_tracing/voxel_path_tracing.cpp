@@ -25,6 +25,9 @@ constexpr int kMostBounces = 1024;
 /// Turns of the loop over light samples, for each of them.
 constexpr int kTurnsOfLight = 1;
 
+/// Turns of the loop by which a ray is moved out of a set voxel: `startOf` in path.glsl.
+constexpr int kTurnsOfPush = 8;
+
 class TracePass : public Pass {
   enum class Order { forward, backward };
   enum class Stuck { push, hit };
@@ -83,6 +86,12 @@ class TracePass : public Pass {
   bool readsMap() const { return map.present() && map->lightCount > 0; }
   bool readsAttributes() const { return bounces > 1 && attributes.present(); }
 
+  /// A bound for the turns of all loops of one ray of a path.
+  std::int64_t turnsOfRay() const {
+    const std::int64_t lights = readsMap() ? std::int64_t{kTurnsOfLight} * map->lightCount : 0;
+    return method.turns(*bits) + lights + kTurnsOfPush;
+  }
+
   /// Error where what is connected does not belong together.
   void checkInputs() const {
     if (bounces > 1) {
@@ -100,8 +109,7 @@ class TracePass : public Pass {
     if (map->albedo == nullptr || (gbuffer->specular != nullptr && map->specular == nullptr))
       throw Error(
           "voxel_path_tracing.trace: 'map' does not tell what its surfaces reflect; expected the output that does, 'surfaces' of reflective_shadow_maps.render");
-    const std::int64_t turns = method.turns(*bits) + std::int64_t{kTurnsOfLight} * map->lightCount;
-    if (turns > kLoopLimit)
+    if (const std::int64_t turns = turnsOfRay(); turns > kLoopLimit)
       throw Error(fmt::format(
           "voxel_path_tracing.trace: a ray through {} asks {} light samples of 'map', in loops of {} turns; expected at most {}: fewer light samples or voxels",
           inWords(bits->grid), map->lightCount, turns, kLoopLimit));
@@ -150,7 +158,8 @@ class TracePass : public Pass {
             .seed = seedWords(frame),
             .number = 0,
             .bounce = 1,
-            .bounces = bounces};
+            .bounces = bounces,
+            .raysAtOnce = 1};
   }
 
   /// What both orders read.
@@ -187,7 +196,8 @@ class TracePass : public Pass {
             .printedTests = asPublished};
   }
 
-  /// Light is added as a path meets it: three textures hold all paths, whatever the number of bounces.
+  /// Light is added as a path meets it: three textures hold all paths, whatever the number of bounces. A
+  /// dispatch follows as many rays of a path as the limit of loops allows.
   void followForward(PassContext& frame, const shader::BindingSet& scene, const gpu::TextureRef& sums,
                      Path path, Outputs outputs) const {
     const shader::BoundProgram& program =
@@ -199,8 +209,11 @@ class TracePass : public Pass {
     const shader::BindingSet states{scene, trace::sums(sums), trace::pathStart(starts),
                                     trace::pathDirection(directions), trace::pathThroughput(throughputs)};
     for (int i = 0; i < samples; ++i, ++path.number)
-      for (path.bounce = 1; path.bounce <= bounces; ++path.bounce)
+      forEachPortion(bounces, turnsOfRay(), [&](int first, int count) {
+        path.bounce = first + 1;
+        path.raysAtOnce = count;
         frame.dispatch(program, {states, trace::path(path)}, pixels(frame));
+      });
   }
 
   /// Every surface of a path stays in textures, a layer a bounce, and light is carried back over them.
