@@ -10,7 +10,7 @@
 #include "lumivox/base/display.h"
 #include "lumivox/base/error.h"
 #include "lumivox/scene/text.h"
-#include "viewer/port_view.h"
+#include "viewer/channel.h"
 
 namespace lumivox::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/command_line.h"
-#include "viewer/session.h"
+#include "viewer/session_options.h"
 
 namespace lumivox::viewer {
 

@@ -28,11 +28,6 @@ void makeDistances(ImageBuffer& depths, const glm::mat4& worldToClip) {
 
 }  // namespace
 
-const std::vector<std::string>& channelWords() {
-  static const std::vector<std::string> words{"colour", "x", "y", "z", "w"};
-  return words;
-}
-
 PortPicture pictureOfPort(const PortContents& contents, const PortChoice& choice, const CameraView& camera,
                           const std::function<VoxelView&()>& view) {
   const auto texture = std::find_if(

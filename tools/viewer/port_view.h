@@ -3,17 +3,13 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "lumivox/base/image.h"
 #include "lumivox/pipeline/port.h"
+#include "viewer/channel.h"
 #include "viewer/voxel_view.h"
 
 namespace lumivox::viewer {
-
-/// Components of a texture: the first three as red, green and blue, or one.
-enum class Channel { colour, x, y, z, w };
-const std::vector<std::string>& channelWords();
 
 /// An output of a pass that is looked at although no image needs it.
 struct PortChoice {

@@ -10,33 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/gpu/device.h"
 #include "lumivox/scene/scene.h"
 #include "viewer/actions.h"
 #include "viewer/judge_worker.h"
 #include "viewer/picture.h"
 #include "viewer/reference_worker.h"
 #include "viewer/render_worker.h"
+#include "viewer/session_options.h"
 #include "viewer/techniques.h"
 #include "viewer/tool_worker.h"
 #include "viewer/view_state.h"
 #include "viewer/watch.h"
 
 namespace lumivox::viewer {
-
-struct SessionOptions {
-  std::filesystem::path scene;
-  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one that suits the scene
-  std::vector<std::string> settings;             ///< "name=value" of the first pipeline
-  std::string camera;
-  double time = 0.0;
-  std::uint64_t seed = 1;     ///< of the random numbers of techniques
-  int width = 0, height = 0;  ///< 0: the camera's
-  std::vector<std::filesystem::path> techniques;
-  bool strict = false;  ///< a library of the first pipelines that does not fit is an Error
-  SceneLoadOptions sceneLoad;
-  gpu::DeviceOptions device;
-};
 
 /// Times of a pass over the last frames that were timed.
 struct PassTimes {

@@ -1,0 +1,18 @@
+// Which components of a texture are shown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lumivox::viewer {
+
+/// Components of a texture: the first three as red, green and blue, or one.
+enum class Channel { colour, x, y, z, w };
+
+/// Their words in scripts, in their order.
+inline const std::vector<std::string>& channelWords() {
+  static const std::vector<std::string> words{"colour", "x", "y", "z", "w"};
+  return words;
+}
+
+}  // namespace lumivox::viewer
