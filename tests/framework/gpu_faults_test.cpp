@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "gpu/state.h"
 #include "lumivox/base/error.h"
@@ -86,6 +87,32 @@ TEST_CASE("a context that tells of resets is asked, and stays lost once it said 
 
 namespace {
 
+int texturesReleased = 0;
+void countReleased(GLsizei count, const GLuint*) {
+  texturesReleased += count;
+}
+
+}  // namespace
+
+TEST_CASE("what a lost context held is gone with it: nothing is released through it") {
+  const TextureDescription description{TextureKind::d2, Format::r32f, 4, 4, 1, 1};
+  Device device({"auto"});
+  { const Texture first(device, description, "first"); }  // which makes the loader know the function
+  const InPlaceOf<void (*)(GLsizei, const GLuint*)> release("epoxy_glDeleteTextures", countReleased);
+  texturesReleased = 0;
+  { const Texture kept(device, description, "of a context that is there"); }
+  CHECK(texturesReleased == 1);
+  {
+    const Texture gone(device, description, "of a context that is lost");
+    CHECK(device.state()->allocatedBytes == 64);
+    device.state()->lost = Reset::own;
+  }
+  CHECK(texturesReleased == 1);
+  CHECK(device.state()->allocatedBytes == 0);
+}
+
+namespace {
+
 std::vector<EGLint> asked;
 bool robustAllowed = true;
 using CreateFunction = EGLContext (*)(EGLDisplay, EGLConfig, EGLContext, const EGLint*);
@@ -128,6 +155,37 @@ TEST_CASE("a context is asked to tell of resets, and made without where the driv
   robustAllowed = false;
   CHECK_NOTHROW(Device({"auto"}));
   CHECK(valueOf(EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY) == -1);
+}
+
+namespace {
+
+using GlTextFunction = const GLubyte* (*)(GLenum);
+GlTextFunction glTextThere = nullptr;
+const GLubyte* textOfHardware(GLenum name) {
+  return name == GL_RENDERER ? reinterpret_cast<const GLubyte*>("a graphics card") : glTextThere(name);
+}
+bool oneMore = true;
+EGLContext createOneMore(EGLDisplay display, EGLConfig config, EGLContext share, const EGLint* attributes) {
+  return std::exchange(oneMore, false) ? createContextThere(display, config, share, attributes)
+                                       : EGL_NO_CONTEXT;
+}
+
+}  // namespace
+
+TEST_CASE("a device goes on where another could not be made beside it") {
+  Device device({"auto"});
+  Texture texture(device, {TextureKind::d2, Format::r32f, 2, 2, 1, 1}, "small");
+  {
+    const InPlaceOf<GlTextFunction> text("epoxy_glGetString", textOfHardware);
+    glTextThere = text.before();
+    const InPlaceOf<CreateFunction> create("epoxy_eglCreateContext", createOneMore);
+    createContextThere = create.before();
+    // Its context becomes current and is dropped, since it does not draw in software.
+    CHECK_THROWS_MATCHES(Device({"software"}), Error, Tells("a graphics card"));
+    CHECK(!oneMore);
+  }
+  texture.uploadFloats(0, std::vector<float>{1.0f, 2.0f, 3.0f, 4.0f});
+  CHECK(texture.downloadFloats(0) == std::vector<float>{1.0f, 2.0f, 3.0f, 4.0f});
 }
 
 namespace {

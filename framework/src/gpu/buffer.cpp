@@ -35,9 +35,10 @@ Buffer::Buffer(Device& device, std::uint64_t sizeBytes, std::string label)
 }
 
 Buffer::~Buffer() {
-  device_->use();
-  glDeleteBuffers(1, &handle_);
-  device_->forgetBindings();
+  if (device_->useToRelease()) {
+    glDeleteBuffers(1, &handle_);
+    device_->forgetBindings();
+  }
   device_->freed(this, sizeBytes_);
 }
 

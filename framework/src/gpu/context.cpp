@@ -12,6 +12,9 @@
 namespace lumivox::gpu {
 namespace {
 
+/// Whose context is current on this thread; null: none's.
+thread_local const Context* currentContext = nullptr;
+
 std::string eglErrorName() {
   switch (eglGetError()) {
     case EGL_NOT_INITIALIZED:
@@ -155,6 +158,7 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
     eglDestroyContext(display, context);
     return fail(why);
   }
+  currentContext = this;
   display_ = display;
   context_ = context;
   platform_ = platform;
@@ -169,9 +173,7 @@ Context::Context(const std::string& request, bool debug) : debug_(debug) {
   const auto renderer = [] { return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))); };
   const auto dropContext = [&](const std::string& why) {
     failures += fmt::format("\n  {}: {}", platform_, why);
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display_, context_);
-    context_ = nullptr;
+    destroy();
   };
 
   if (request == "auto" || request == "software") {
@@ -213,14 +215,28 @@ Context::Context(const std::string& request, bool debug) : debug_(debug) {
 }
 
 Context::~Context() {
-  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  destroy();
+}
+
+void Context::destroy() {
+  if (currentContext == this) {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    currentContext = nullptr;
+  }
   eglDestroyContext(display_, context_);
+  context_ = nullptr;
+}
+
+bool Context::tryMakeCurrent() const noexcept {
+  if (currentContext == this) return true;
+  if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return false;
+  currentContext = this;
+  return true;
 }
 
 void Context::makeCurrent() const {
-  if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+  if (!tryMakeCurrent())
     throw Error(fmt::format("{}: cannot make the OpenGL context current, {}", platform_, eglErrorName()));
-  }
 }
 
 }  // namespace lumivox::gpu

@@ -12,9 +12,6 @@
 namespace lumivox::gpu {
 namespace {
 
-// The state whose context is current on this thread.
-thread_local DeviceState* currentState = nullptr;
-
 void onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                      const GLchar* message, const void* user) {
   using Kind = DriverMessages::Kind;
@@ -66,7 +63,6 @@ DeviceState::DeviceState(const DeviceOptions& options)
       memoryBytes(options.memoryBytes),
       debug(options.debugContext),
       arithmetic(options.arithmetic) {
-  currentState = this;
   info.vendor = glText(GL_VENDOR);
   info.renderer = glText(GL_RENDERER);
   info.version = glText(GL_VERSION);
@@ -100,7 +96,7 @@ DeviceState::DeviceState(const DeviceOptions& options)
 }
 
 DeviceState::~DeviceState() {
-  use();
+  if (!useToRelease()) return;
   if (debug) glDebugMessageCallback(nullptr, nullptr);
   framebuffers.clear();
   programs.clear();
@@ -108,7 +104,6 @@ DeviceState::~DeviceState() {
   uniforms.destroy();
   glDeleteSamplers(static_cast<GLsizei>(samplers.size()), samplers.data());
   glDeleteVertexArrays(1, &vertexArray);
-  currentState = nullptr;
 }
 
 void DeviceState::listen() {
@@ -186,12 +181,6 @@ void DeviceState::makeSamplers() {
       glSamplerParameteri(samplers[i], GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
     }
   }
-}
-
-void DeviceState::use() {
-  if (currentState == this) return;
-  context.makeCurrent();
-  currentState = this;
 }
 
 void DeviceState::requireContext(const std::string& what, bool errorTold) {

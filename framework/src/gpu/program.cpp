@@ -240,8 +240,7 @@ Program::Program(Device& device, std::string name, std::span<const StageCode> st
 }
 
 Program::~Program() {
-  device_->use();
-  if (device_->programs.release(handle_)) device_->forgetBindings();
+  if (device_->useToRelease() && device_->programs.release(handle_)) device_->forgetBindings();
 }
 
 }  // namespace lumivox::gpu

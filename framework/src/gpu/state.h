@@ -44,11 +44,14 @@ class Context {
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
+  /// Error where the driver refuses.
   void makeCurrent() const;
+  bool tryMakeCurrent() const noexcept;
   const std::string& platform() const { return platform_; }
 
  private:
   bool tryDisplay(void* display, const std::string& platform, std::string& failures);
+  void destroy();
 
   bool debug_;
   void* display_ = nullptr;
@@ -169,7 +172,10 @@ struct DeviceState {
   ~DeviceState();
 
   /// Makes the context current when another Device was used last on this thread.
-  void use();
+  void use() { context.makeCurrent(); }
+  /// The same for destructors. False: the context is lost, or cannot be made current, and what it held is
+  /// gone with it, so that there is nothing to release.
+  bool useToRelease() noexcept { return !lost && context.tryMakeCurrent(); }
   /// Throws what the driver complained about since the last check, naming `what` was being done. Without a
   /// debug context it must ask for that, for which a driver that works on another thread is waited for.
   void check(const std::string& what);

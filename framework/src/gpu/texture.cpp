@@ -136,10 +136,11 @@ Texture::Texture(Device& device, const TextureDescription& description, std::str
 }
 
 Texture::~Texture() {
-  device_->use();
-  device_->framebuffers.forget(handle_);
-  glDeleteTextures(1, &handle_);
-  device_->forgetBindings();
+  if (device_->useToRelease()) {
+    device_->framebuffers.forget(handle_);
+    glDeleteTextures(1, &handle_);
+    device_->forgetBindings();
+  }
   device_->freed(this, sizeBytes());
 }
 

@@ -228,7 +228,7 @@ PassTimers::PassTimers(Device& device, std::size_t framesUnderWay)
 }
 
 PassTimers::~PassTimers() {
-  state_->device->use();
+  if (!state_->device->useToRelease()) return;
   for (State::Slot& slot : state_->ring)
     glDeleteQueries(static_cast<GLsizei>(slot.queries.size()), slot.queries.data());
 }
