@@ -35,8 +35,8 @@ void main() {
   addArrivingBeside(known, lightCount, posWorld, unpackNormal(fragment.normal), true, 0, front, back);
 #endif
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x), 0.0, 1.0);
-  vec3 sides[2] = vec3[2](albedo / kPi * front, albedo / kPi * back);
-  sides[known.side] += known.radiance;
+  vec3 sides[2] = vec3[2](albedo / kPi * front + (known.side == 0 ? known.radiance : vec3(0.0)),
+                          albedo / kPi * back + (known.side == 0 ? vec3(0.0) : known.radiance));
   float most = 0.0;
   for (int side = 0; side < 2; ++side)
     for (int channel = 0; channel < 3; ++channel) {

@@ -45,9 +45,10 @@ VoxelWalk startWalk(vec3 origin, vec3 direction, float from) {
 void nextVoxel(inout VoxelWalk walk) {
   walk.side = axisOfLeast(walk.next);
   walk.from = walk.to;
-  walk.voxel[walk.side] += walk.turn[walk.side];
-  walk.next[walk.side] += walk.perVoxel[walk.side];
-  walk.inside = walk.from < walk.end && walk.voxel[walk.side] >= 0 && walk.voxel[walk.side] < gridResolution[walk.side];
+  bvec3 crossed = equal(ivec3(0, 1, 2), ivec3(walk.side));
+  walk.voxel += mix(ivec3(0), walk.turn, crossed);
+  walk.next += mix(vec3(0.0), walk.perVoxel, crossed);
+  walk.inside = walk.from < walk.end && all(greaterThanEqual(walk.voxel, ivec3(0))) && all(lessThan(walk.voxel, gridResolution));
   walk.to = max(min(walk.next[axisOfLeast(walk.next)], walk.end), walk.from);
 }
 

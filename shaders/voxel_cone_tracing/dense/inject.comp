@@ -31,8 +31,8 @@ void main() {
   uint place = sumsAt(voxel);
   float most = mostRadianceIn(voxel);
 #if DIRECTIONS
-  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + emitted, albedo / kPi * (ambient + back));
-  sides[known.side] += known.radiance;
+  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + emitted + (known.side == 0 ? known.radiance : vec3(0.0)),
+                          albedo / kPi * (ambient + back) + (known.side == 0 ? vec3(0.0) : known.radiance));
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
     vec3 radiance = min(sides[side], most);
