@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/start_process.h"
@@ -145,6 +147,20 @@ std::string Child::lastWords() const {
   std::string words = errors_.size() > kWordsKept ? errors_.substr(errors_.size() - kWordsKept) : errors_;
   while (!words.empty() && words.back() == '\n') words.pop_back();
   return words;
+}
+
+std::filesystem::path programOnPath(const std::string& name, const std::string& purpose,
+                                    const std::string& package, const std::string& otherwise) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / name;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(program, ignored) && access(program.c_str(), X_OK) == 0)
+      return program;
+  }
+  throw AbsentError(fmt::format("{}, {}, is not on the PATH; install it (Debian: apt-get install {}), or {}",
+                                name, purpose, package, otherwise));
 }
 
 }  // namespace lumivox

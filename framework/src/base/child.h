@@ -5,6 +5,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,5 +55,10 @@ class Child {
   std::string pending_, errors_;
   std::optional<int> status_;
 };
+
+/// The first executable of this name in the folders of PATH. AbsentError: "NAME, PURPOSE, is not on the PATH;
+/// install it (Debian: apt-get install PACKAGE), or OTHERWISE".
+std::filesystem::path programOnPath(const std::string& name, const std::string& purpose,
+                                    const std::string& package, const std::string& otherwise);
 
 }  // namespace lumivox

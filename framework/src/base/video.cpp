@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 
 #include "base/child.h"
@@ -45,16 +44,7 @@ class TemporaryFolder {
 }  // namespace
 
 fs::path ffmpegProgram() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path program = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
-    std::error_code ignored;
-    if (fs::is_regular_file(program, ignored) && access(program.c_str(), X_OK) == 0) return program;
-  }
-  throw AbsentError(
-      "ffmpeg, which encodes videos, is not on the PATH; install it (Debian: apt-get install ffmpeg), or "
-      "write numbered images");
+  return programOnPath("ffmpeg", "which encodes videos", "ffmpeg", "write numbered images");
 }
 
 struct VideoWriter::State {

@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <span>
-#include <sstream>
 
 #include "base/child.h"
 #include "lumivox/base/error.h"
@@ -29,16 +27,7 @@ std::string comment(std::string text) {
 }  // namespace
 
 fs::path dotProgram() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path program = fs::path(folder.empty() ? "." : folder) / "dot";
-    std::error_code ignored;
-    if (fs::is_regular_file(program, ignored) && access(program.c_str(), X_OK) == 0) return program;
-  }
-  throw AbsentError(
-      "dot, which draws graphs, is not on the PATH; install it (Debian: apt-get install graphviz), or write "
-      "the graph's text (.dot)");
+  return programOnPath("dot", "which draws graphs", "graphviz", "write the graph's text (.dot)");
 }
 
 void writeGraph(const fs::path& file, const std::string& text) {
