@@ -159,6 +159,22 @@ TEST_CASE("two and eight bounces of paths differ from the reference of the boxes
   checkNoiseAlone(512, 0.01);
 }
 
+TEST_CASE("the noise of paths falls as the root of their number, or faster") {
+  const Known known("cornell", 64, 16);
+  const int bounces = GENERATE(1, 2, 8);
+  const std::vector<float> settled = traced(known, bounces, 2048);
+  const auto noiseOf = [&](int samples) {
+    const std::vector<float> found = traced(known, bounces, samples);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (i % 4 != 3) sum += std::pow(static_cast<double>(found[i]) - settled[i], 2.0);
+    return std::sqrt(sum);
+  };
+  const double few = noiseOf(4), some = noiseOf(16), many = noiseOf(64);
+  CAPTURE(bounces, few / some, some / many);
+  CHECK(few / many >= 4.0);
+}
+
 // A minute.
 TEST_CASE("with 4096 paths a pixel all light of the boxes is met within 0.3 %", "[.]") {
   checkNoiseAlone(4096, 0.003);
