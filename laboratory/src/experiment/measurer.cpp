@@ -313,6 +313,7 @@ void Measurer::lookAt(const std::vector<WantedPoint>& points) {
     if (wasLookedAt(point)) continue;
     Frame& known = frames_[point.loaded];
     whyFailed([&] { known = frame(point); });
+    logDetails("{}: a frame takes {:.3f} s", text(point), known.seconds);
   }
 }
 

@@ -132,6 +132,7 @@ class SceneReport {
   }
 
   /// Of each pipeline in turn the next point, as long as the time allows; false when nothing was left to do.
+  /// A limited time is not spent on looking at a pipeline for whose default point there was none.
   bool measureMore(const Budget& budget, const std::function<void(std::size_t)>& done) {
     std::vector<Point*> batch;
     double seconds = 0.0;
@@ -140,7 +141,9 @@ class SceneReport {
       std::set<const LoadedPipeline*> had;
       for (Point& point : points_) {
         if (point.state != State::missing || std::find(batch.begin(), batch.end(), &point) != batch.end() ||
-            had.count(point.wanted.loaded) != 0 || batch.size() == Measurer::kBatch)
+            had.count(point.wanted.loaded) != 0 || batch.size() == Measurer::kBatch ||
+            (!measurer_.wasLookedAt(point.wanted) &&
+             (defaultIsMissing(*point.wanted.loaded) || !budget.allows(seconds))))
           continue;
         had.insert(point.wanted.loaded);
         const double expected = budget.isLimited() ? measurer_.mostSeconds(point.wanted) : 0.0;
@@ -152,6 +155,13 @@ class SceneReport {
     }
     measure(batch, done);
     return !batch.empty();
+  }
+
+  bool defaultIsMissing(const LoadedPipeline& pipeline) const {
+    return std::any_of(points_.begin(), points_.end(), [&](const Point& point) {
+      return point.wanted.loaded == &pipeline && point.wanted.point.isDefault &&
+             point.state == State::missing;
+    });
   }
 
   /// With and without leaving out, of every pipeline whose default point works, as long as there is time:
