@@ -22,23 +22,6 @@ std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int level
   return result;
 }
 
-/// The nodes in which reading finds one of these: those that have it among the voxels 2n to 2n + 2.
-std::set<Cell> nodesWith(const std::set<Cell>& voxels, int nodesAlong) {
-  std::set<Cell> result;
-  for (const Cell& voxel : voxels)
-    for (int side = 0; side < 8; ++side) {
-      Cell node{};
-      bool inside = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int lower = (side >> axis & 1) != 0 && voxel[axis] % 2 == 0 ? 1 : 0;
-        node[axis] = voxel[axis] / 2 - lower;
-        inside = inside && node[axis] >= 0 && node[axis] < nodesAlong;
-      }
-      if (inside) result.insert(node);
-    }
-  return result;
-}
-
 /// The nodes that these voxels are their own of.
 std::set<Cell> ownersOf(const std::set<Cell>& voxels) {
   std::set<Cell> result;
@@ -49,19 +32,6 @@ std::set<Cell> ownersOf(const std::set<Cell>& voxels) {
 std::set<Cell> nodesOf(const VoxelOctree& tree, int level) {
   std::set<Cell> result;
   for (const auto& brick : OctreeBrickList::of(tree, level).bricks) result.insert(cellOf(brick.place));
-  return result;
-}
-
-/// Voxels of a sphere's surface, some of them several times.
-std::vector<FragmentData> shell(const glm::ivec3& size) {
-  std::vector<FragmentData> result;
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x) {
-        const float radius = glm::length(glm::vec3(x, y, z) - 0.4f * glm::vec3(size));
-        if (std::abs(radius - 0.35f * static_cast<float>(size.x)) > 0.6f) continue;
-        for (int copies = 0; copies <= (x + y) % 2; ++copies) result.push_back(fragmentAt({x, y, z}));
-      }
   return result;
 }
 
