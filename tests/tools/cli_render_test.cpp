@@ -81,6 +81,24 @@ TEST_CASE("render accumulates frames at each time; without anything that does, t
   CHECK_FALSE(place.has("x.exr"));
 }
 
+TEST_CASE("render says that frames accumulate anew where something moves, and not where nothing does") {
+  const Workplace place;
+  const auto said = [&](const char* scene) {
+    return typed("render", sourceDirectory() / "scenes" / scene, committedPipeline("near_field_voxels"),
+                 "--set resolution=16 --set rays=4 --resolution 8x8 --fps 1 --frames 0..2 --accumulate 3 -o",
+                 place / "f#.exr");
+  };
+  const CommandResult moving = said("spinning_box.scene"), still = said("cornell.scene");
+  INFO(moving.errors << still.errors);
+  REQUIRE(moving.exitCode == 0);
+  REQUIRE(still.exitCode == 0);
+  const std::string fact = "accumulates from 1 s on anew";
+  const std::size_t at = unwrapped(moving.errors).find(fact);
+  CHECK(at != std::string::npos);
+  CHECK(unwrapped(moving.errors).find("accumulates from", at + 1) == std::string::npos);  // once
+  CHECK_FALSE(contains(unwrapped(still.errors), "accumulates from"));
+}
+
 TEST_CASE("render --check-reads finds nothing in techniques that say what they read") {
   const Workplace place;
   for (const char* pipeline : {"voxel_cone_tracing", "light_propagation_volumes"})

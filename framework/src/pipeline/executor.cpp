@@ -419,8 +419,11 @@ PipelineExecutor::~PipelineExecutor() = default;
 FrameResult PipelineExecutor::render(double time, int frameIndex, Images images, Timing timing) {
   State& s = *state_;
   const auto start = s.startFrame(s.instrumentOf(timing));
-  return s.frame(snapshotOf(*s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
-                 images, timing, start);
+  FrameResult result =
+      s.frame(snapshotOf(*s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
+              images, timing, start);
+  s.tellOfStart(time);
+  return result;
 }
 
 FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Images images,

@@ -1,6 +1,7 @@
 // The state that an executor carries from frame to frame, and its reaction to changed parameters or scenes.
 #include <algorithm>
 
+#include "lumivox/base/log.h"
 #include "pipeline/changes.h"
 #include "pipeline/executor_state.h"
 
@@ -47,8 +48,20 @@ void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapsho
     }
   }
   if (stillFrames.empty()) stillFrames.assign(graph.passes.size(), -1);
-  for (std::size_t pass = 0; pass < graph.passes.size(); ++pass)
+  for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
+    const bool accumulates =
+        plan->passes[pass].kept && reads(readsOf(*graph.passes[pass].object), Reads::history);
+    if (accumulates && disturbed[pass] && stillFrames[pass] > 0) startsAgain = graph.passes[pass].name;
     stillFrames[pass] = disturbed[pass] ? 0 : stillFrames[pass] + 1;
+  }
+}
+
+void PipelineExecutor::State::tellOfStart(double time) {
+  if (startsAgain.empty() || toldOfStart) return;
+  logInformation(
+      "pipeline \"{}\": pass {} accumulates from {:g} s on anew, since something that it depends on has changed, and after every further change",
+      pipeline.name, startsAgain, time);
+  toldOfStart = true;
 }
 
 void PipelineExecutor::State::holdHistories() {

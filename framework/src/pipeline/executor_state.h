@@ -41,6 +41,8 @@ struct PipelineExecutor::State {
   std::map<std::size_t, std::vector<float>> lastOfCamera;  ///< Pass::readsOfCamera(), the same
   /// Per pass, with RenderOptions::accumulate: PassContext::accumulated(). Empty when histories are.
   std::vector<int> stillFrames;
+  std::string startsAgain;   ///< a pass whose accumulated frames a change has ended
+  bool toldOfStart = false;  ///< the user knows
   std::vector<std::vector<OutputIndex>> countedSources;  ///< per pass: sourcesThatCount() of this plan
   bool interrupted = false;                              ///< an error ended the last frame
   gpu::PassTimers timers;
@@ -70,6 +72,8 @@ struct PipelineExecutor::State {
   std::vector<std::vector<OutputIndex>> sourcesThatCount();
   std::map<std::string, int> indirectBounces() const;
   void countStillFrames(Reads changed, const SceneSnapshot& snapshot);
+  /// Tells, once, that frames accumulate anew since the scene at this time is another.
+  void tellOfStart(double time);
   void holdHistories();
   void emptyHistories();
 
