@@ -1,6 +1,6 @@
-# Measures that make a first build short: headers that many sources include are read once and kept precompiled, and sources of the framework
-# and of the tools are compiled several at a time. No source relies on either: each includes what it uses, and the presets "debug" and "sanitize"
-# compile each alone. Techniques are always compiled file by file, since they change most often.
+# Measures that make a first build short: headers that many sources include are read once and kept precompiled, and sources are compiled
+# several at a time: what they share (headers, templates) takes most of the compiler's time. No source relies on either: each includes what it
+# uses, and the presets "debug" and "sanitize" compile each alone. Of techniques, which change most often, a change compiles a few files more.
 # lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
 # lumivox_compile_together(TARGET): several sources at a time.
 # lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: commands, records, pages, plans.
