@@ -2,7 +2,7 @@
 # several at a time: what they share (headers, templates) takes most of the compiler's time. No source relies on either: each includes what it
 # uses, and the presets "debug" and "sanitize" compile each alone. Of techniques, which change most often, a change compiles a few files more.
 # lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
-# lumivox_compile_together(TARGET): several sources at a time.
+# lumivox_compile_together(TARGET [COUNT]): several sources at a time, by default 8.
 # lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: commands, records, pages, plans.
 option(LUMIVOX_FAST_BUILD "Read the headers that many sources include once, and compile several sources at a time" ON)
 
@@ -31,9 +31,13 @@ function(lumivox_precompile target)
 endfunction()
 
 function(lumivox_compile_together target)
+  set(count 8)
+  if(ARGC GREATER 1)
+    set(count ${ARGV1})
+  endif()
   # Types of a source's own seem to be those of a header when several sources are one.
   target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${LUMIVOX_FAST_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${LUMIVOX_FAST_BUILD} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${LUMIVOX_FAST_BUILD} UNITY_BUILD_BATCH_SIZE ${count})
 endfunction()
 
 function(lumivox_compile_quickly)
