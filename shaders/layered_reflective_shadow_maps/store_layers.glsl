@@ -19,6 +19,7 @@ layout(std140, binding = 1) uniform Store {
   int storeOpacityOfFinestVoxel;  // 1: of a path of one finest voxel's length; 0: across the whole voxel
   float slab;                     // depths that count as those of a step, in voxels that are read
   int firstLight, lightsAtOnce;   // of this dispatch
+  int firstLayer, layersAtOnce;   // of each view
 };
 layout(binding = 4) uniform sampler3D opacityGrid;
 #if LIGHTS
@@ -31,7 +32,9 @@ layout(std430, binding = 8) readonly buffer ViewLayers { uvec2 viewLayers[]; }; 
 
 layout(constant_id = 2) const int shareRule = 0;   // kNormal, kChebyshev
 layout(constant_id = 4) const int facingRule = 1;  // 0: normals are not looked at
+layout(constant_id = 5) const int slantRule = 1;   // 1: the slab is as thick along the normal of a slanted surface; 0: along the view
 const int kNormal = 0, kChebyshev = 1;
+const float kLeastSlant = 0.2;  // cosine: a more grazing view knows too little of the surface
 
 // Of normally distributed depths, the share below x standard deviations (Page 1977), within 3e-4.
 float belowNormal(float x) { return 0.5 + 0.5 * tanh(clamp(0.79788456 * (x + 0.044715 * x * x * x), -20.0, 20.0)); }
@@ -62,18 +65,22 @@ vec3 shoneByView(LightSample light, int view, vec3 at, vec3 direction, float siz
   float depth = parallel ? dot(at, light.direction) : clip.w;
   // Texels as wide as voxels: both are read by a kernel twice as wide.
   float level = log2(max(size / (light.texelWidth * (parallel ? 1.0 : depth)), 1.0));
-  vec2 ends = depth + vec2(-0.5, 0.5) * (slab * size);
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < own.y; ++i) {
+  float thickness = slab * size, most = slantRule != 0 ? thickness / kLeastSlant : thickness;
+  vec3 sum = vec3(0.0), toView = parallel ? light.direction : normalize(at - light.position);
+  for (uint i = uint(firstLayer); i < min(own.y, uint(firstLayer + layersAtOnce)); ++i) {
     Layer layer = layers[own.x + i];
-    vec2 off = (ends - layer.middle) / layer.halfWidth;
-    if (off.x > 1.0 || off.y < -1.0) continue;
+    float off = depth - layer.middle;
+    if (abs(off) > layer.halfWidth + 0.5 * most) continue;
     vec3 texcoord = vec3(place, float(own.x + i));
     vec4 radiance = textureLod(radianceLayers, texcoord, level);
     if (!(radiance.a > 0.0)) continue;
-    if (facingRule != 0 && dot(textureLod(normalLayers, texcoord, level).xyz, direction) >= 0.0) continue;
+    vec3 normal = textureLod(normalLayers, texcoord, level).xyz;
+    if (facingRule != 0 && dot(normal, direction) >= 0.0) continue;
+    float slant = abs(dot(normal, toView)) * inversesqrt(max(dot(normal, normal), 1e-12));
+    float along = slantRule != 0 ? thickness / max(slant, kLeastSlant) : thickness;
     vec2 moments = textureLod(depthLayers, texcoord, level).xy / radiance.a;
-    sum += shareBetween(off, moments.x, moments.y - moments.x * moments.x) * radiance.rgb;
+    vec2 ends = (off + vec2(-0.5, 0.5) * along) / layer.halfWidth;
+    sum += shareBetween(ends, moments.x, moments.y - moments.x * moments.x) * radiance.rgb;
   }
   return sum;
 }

@@ -25,9 +25,9 @@ class GatherPass : public Pass {
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<OpacityLevels> opacity{this, "opacity", "opacities of voxels, one mip per halving", Levels::all};
-  In<LayeredReflectiveShadowMap> layers{
-      this, "layers", Presence::optional,
-      "light of the voxels; without it only the environment shines", Needs::anyLight};
+  In<LayeredReflectiveShadowMap> layers{this, "layers", Presence::optional,
+                                        "light of the voxels; without it only the environment shines",
+                                        Needs::anyLight};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
   Param<int> glossyCones{this, "glossy_cones", 4, within(1, 64),
                          "cones per pixel that share the Phong lobe; 1: one cone as wide as the lobe"};
@@ -41,24 +41,25 @@ class GatherPass : public Pass {
   Param<float> slab{
       this, "slab", 3.0f, within(0.1f, 100.0f),
       "depths that count as those of a step, in voxels that are read; a surface's voxels are read up to 1.5 off it"};
-  Param<bool> facing{this, "facing", true,
-                     "only layers count whose filtered normal looks against the cone"};
-  Param<float> step{this, "step", 0.5f, within(0.05f, 2.0f),
-                    "step along a cone as a share of its diameter"};
+  Param<bool> slant{
+      this, "slant", true,
+      "the slab is that thick along a layer's filtered normal; off: along the view, so that slanted surfaces lose light",
+      published(false)};
+  Param<bool> facing{this, "facing", true, "only layers count whose filtered normal looks against the cone"};
+  Param<float> step{this, "step", 0.5f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 8.0f),
                       "distance of a cone's start along the normal, in voxels"};
   Param<float> start{this, "start", 1.0f, within(0.0f, 8.0f),
                      "distance of a cone's start along its axis, in voxels"};
-  Param<float> clearance{
-      this, "clearance", 0.5f, within(0.0f, 1e3f),
-      "largest voxel that is read, as a share of its height over the surface"};
+  Param<float> clearance{this, "clearance", 0.5f, within(0.0f, 1e3f),
+                         "largest voxel that is read, as a share of its height over the surface"};
   Param<float> footprint{this, "footprint", 0.5f, within(0.25f, 1.0f),
                          "size of the voxels that are read, as a share of the cone's diameter"};
   Param<float> refinement{
       this, "refinement", 0.5f, within(0.0f, 1.0f),
       "smallest voxel that is read where voxels are partly covered, as a share of the size for the cone; 1: none smaller; 0: the finest"};
-  Param<float> reach{this, "reach", 0.0f, within(0.0f, 1e9f), "m",
-                     "length of a cone; 0: to the end of the grid"};
+  Param<float> reach{
+      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"};
   Param<float> jitter{
       this, "jitter", 0.0f, within(0.0f, 1.0f),
       "largest random reduction of a cone's first step, as a share of it, for each pixel and cone"};
@@ -73,24 +74,28 @@ class GatherPass : public Pass {
   float diagonal() const {
     return glm::length(glm::vec3(opacity->grid.resolution)) * opacity->grid.voxelSize;
   }
-  /// A bound for the turns of all loops of one cone that so many lights light: steps of the finest voxel, as
-  /// many that are read once more by finer voxels, and the lights and layers that each step asks.
-  std::int64_t turnsOfCone(int lights) const {
+  /// What one dispatch asks at a step of a cone.
+  struct Asked {
+    int lights, layers;  ///< of each view
+  };
+  /// A bound for the turns of all loops of one cone: steps of the finest voxel, as many that are read once
+  /// more by finer voxels, and what each step asks.
+  std::int64_t turnsOfCone(const Asked& asked) const {
     const float length = reach > 0.0f ? std::min<float>(reach, diagonal()) : diagonal();
     const auto steps = static_cast<std::int64_t>(std::ceil(length / (step * opacity->grid.voxelSize)));
-    const std::int64_t ofLight = layers.present() ? 1 + layers->mostOfView : 1;
     constexpr std::int64_t kFirst = 24;  // that are read more finely before the first step
-    return (2 * steps + kFirst) * (1 + lights * ofLight);
+    return (2 * steps + kFirst) * (1 + asked.lights * (1 + asked.layers));
   }
-  /// How many lights one dispatch may ask. Error where one is too many.
-  int lightsAtOnce() const {
-    int count = std::max(lightCount(), 1);
-    while (count > 1 && turnsOfCone(count) > kLoopLimit) count = (count + 1) / 2;
-    if (const std::int64_t turns = turnsOfCone(std::min(count, lightCount())); turns > kLoopLimit)
+  /// As many lights as one dispatch may ask, with all layers or, of one light, with as many as it may.
+  Asked askedAtOnce() const {
+    Asked asked{std::max(lightCount(), 1), layers.present() ? std::max(layers->mostOfView, 1) : 1};
+    while (asked.lights > 1 && turnsOfCone(asked) > kLoopLimit) asked.lights = (asked.lights + 1) / 2;
+    while (asked.layers > 1 && turnsOfCone(asked) > kLoopLimit) asked.layers = (asked.layers + 1) / 2;
+    if (const std::int64_t turns = turnsOfCone(asked); turns > kLoopLimit)
       throw Error(fmt::format(
-          "layered_reflective_shadow_maps.gather: a cone through {} may take {} turns of loops; expected at most {}: fewer voxels or layers, or a longer 'step'",
+          "layered_reflective_shadow_maps.gather: a cone through {} may take {} turns of loops; expected at most {}: fewer voxels, or a longer 'step'",
           inWords(opacity->grid), turns, kLoopLimit));
-    return count;
+    return asked;
   }
 
   shader::BindingSet marchOf(PassContext& frame, bool addsEnvironment) const {
@@ -107,7 +112,7 @@ class GatherPass : public Pass {
          .seed = seedWords(frame)})};
   }
 
-  shader::BindingSet storeOf(int firstLight, int lights) const {
+  shader::BindingSet storeOf(int firstLight, int lights, int firstLayer, int ofView) const {
     const GridPlacement& grid = opacity->grid;
     const int filled =
         opacity->filledLevels == 0 ? opacity->opacity->description().levels : opacity->filledLevels;
@@ -121,7 +126,9 @@ class GatherPass : public Pass {
              .storeOpacityOfFinestVoxel = opacity->opacityOf == RadianceGrid::Opacity::ofFinestVoxel,
              .slab = slab,
              .firstLight = firstLight,
-             .lightsAtOnce = lights}),
+             .lightsAtOnce = lights,
+             .firstLayer = firstLayer,
+             .layersAtOnce = ofView}),
         gather::opacityGrid(opacity->opacity, gpu::Sampling::linearMipsBorder)};
     if (lights > 0) {
       result.add(shader::StorageSlot{"Lights"}(layers->lights));
@@ -137,7 +144,8 @@ class GatherPass : public Pass {
 
   /// All cones of a lobe, in as many dispatches as keep the loops within what drivers run.
   void gathered(PassContext& frame, int lobe, int count, const gpu::TextureRef& image) const {
-    const int lights = lightCount(), most = lightsAtOnce();
+    const int lights = lightCount(), ofView = layers.present() ? layers->mostOfView : 0;
+    const Asked asked = askedAtOnce();
     const bool environment = frame.traits().environment;
     if (lights == 0 && !environment) return image->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     const shader::BoundProgram& program =
@@ -145,20 +153,24 @@ class GatherPass : public Pass {
                       gather::Constants{.coneCount = count,
                                         .shareRule = static_cast<int>(static_cast<Share>(share)),
                                         .facingRule = facing,
+                                        .slantRule = slant,
                                         .pattern = pattern});
     gather::Parameters parameters{.eyeWorld = frame.snapshot().camera.eye, .first = true};
-    forEachPortion(count, turnsOfCone(std::min(most, lights)), [&](int firstCone, int conesAtOnce) {
-      for (int light = 0; light == 0 || light < lights; light += most) {
-        const int ofPortion = std::min(most, lights - light);
-        parameters.firstCone = firstCone;
-        parameters.conesAtOnce = conesAtOnce;
-        parameters.last = firstCone + conesAtOnce == count && light + ofPortion >= lights;
-        frame.dispatch(program,
-                       {gather::parameters(parameters), GBufferBinding(*gbuffer), storeOf(light, ofPortion),
-                        marchOf(frame, light == 0), gather::sumImage(image)},
-                       pixels(frame));
-        parameters.first = false;
-      }
+    forEachPortion(count, turnsOfCone(asked), [&](int firstCone, int conesAtOnce) {
+      parameters.firstCone = firstCone;
+      parameters.conesAtOnce = conesAtOnce;
+      for (int light = 0; light == 0 || light < lights; light += asked.lights)
+        for (int layer = 0; layer == 0 || layer < ofView; layer += asked.layers) {
+          const int ofPortion = std::min(asked.lights, lights - light);
+          parameters.last = firstCone + conesAtOnce == count && light + ofPortion >= lights &&
+                            layer + asked.layers >= ofView;
+          frame.dispatch(program,
+                         {gather::parameters(parameters), GBufferBinding(*gbuffer),
+                          storeOf(light, ofPortion, layer, asked.layers),
+                          marchOf(frame, light == 0 && layer == 0), gather::sumImage(image)},
+                         pixels(frame));
+          parameters.first = false;
+        }
     });
   }
 
@@ -180,8 +192,9 @@ class GatherPass : public Pass {
 }  // namespace
 
 void addGather(TechniqueRegistry& registry) {
-  registry.add<GatherPass>("gather",
-                           "Cones through opacities, lit by layered reflective shadow maps (thesis Gomes 2015, Sec. 3.3)");
+  registry.add<GatherPass>(
+      "gather",
+      "Cones through opacities, lit by layered reflective shadow maps (thesis Gomes 2015, Sec. 3.3)");
 }
 
 }  // namespace lumivox::layered_reflective_shadow_maps

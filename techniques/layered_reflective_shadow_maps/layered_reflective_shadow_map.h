@@ -26,9 +26,9 @@ struct LayeredReflectiveShadowMap {
   gpu::TextureRef depth = nullptr;
   int lightCount = 0;
   int viewCount = 0;
-  int layerCount = 0;    ///< stored; the textures have one at least
-  int mostOfView = 0;    ///< no view has more layers
-  float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
+  int layerCount = 0;  ///< stored; the textures have one at least
+  int mostOfView = 0;  ///< no view has more layers
+  float unit = 1.0f;   ///< W/(sr m^2): keeps very bright and very dark light within half floats
 };
 
 template <>
@@ -36,21 +36,22 @@ struct PortTraits<LayeredReflectiveShadowMap> {
   static PortKind kind() {
     constexpr auto kAny = PortResource::Sign::any;
     const char* const shape = "d2Array rgba16f or rgba32f with mips";
-    return {"LayeredReflectiveShadowMap",
-            "the surfaces that each light sees, in layers by depth and by normal, one mip per halving",
-            {{"lights", "buffer", "array of LightSample in shaders/common/lights.glsl"},
-             {"views", "buffer", "mat4 per view: world to light clip space"},
-             {"layers", "buffer",
-              "of each layer: middle and half width of its depths, m; its view; the side of a cube that its normals look to, or -1; view, interval and side in one number",
-              kAny},
-             {"viewLayers", "buffer", "two words per view: its first layer, and how many it has"},
-             {"radiance", shape, "rgb diffusely reflected radiance * cover / unit, a cover"},
-             {"normal", shape, "xyz normal * cover", kAny},
-             {"depth", "d2Array rg32f with mips",
-              "depth, and its square, times cover: in half widths about the middle of the interval", kAny}},
-            {},
-            {},
-            {radianceUnitCondition()}};
+    return {
+        "LayeredReflectiveShadowMap",
+        "the surfaces that each light sees, in layers by depth and by normal, one mip per halving",
+        {{"lights", "buffer", "array of LightSample in shaders/common/lights.glsl"},
+         {"views", "buffer", "mat4 per view: world to light clip space"},
+         {"layers", "buffer",
+          "of each layer: middle and half width of its depths, m; its view; the side of a cube that its normals look to, or -1; view, interval and side in one number",
+          kAny},
+         {"viewLayers", "buffer", "two words per view: its first layer, and how many it has"},
+         {"radiance", shape, "rgb diffusely reflected radiance * cover / unit, a cover"},
+         {"normal", shape, "xyz normal * cover", kAny},
+         {"depth", "d2Array rg32f with mips",
+          "depth, and its square, times cover: in half widths about the middle of the interval", kAny}},
+        {},
+        {},
+        {radianceUnitCondition()}};
   }
   static void contents(const LayeredReflectiveShadowMap& port, PortContents& contents) {
     contents.buffer("lights", port.lights);

@@ -29,9 +29,12 @@ class LayersPass : public Pass {
   Param<Intervals> intervals{
       this, "intervals", Intervals::equal,
       "intervals of depth; equal: of equal width; population: with as many texels each"};
-  Param<int> normalLayers{
-      this, "normal_layers", 6, within(1, 6),
-      "layers of an interval by normals: 6, by the largest component and its sign, or 1"};
+  Param<int> normalLayers{this,
+                          "normal_layers",
+                          1,
+                          within(1, 6),
+                          "layers of an interval by normals: 1, or 6, by the largest component and its sign",
+                          published(6)};
   Param<float> unit{
       this, "unit", 0.0f, within(0.0f, 1e30f),
       "with 'precision half': radiance that the number 1 stands for, W/(sr m^2); 0: chosen by the lights"};
@@ -52,7 +55,8 @@ class LayersPass : public Pass {
     constexpr float kNearest = 1.0f / 128.0f;
     const Bounds& bounds = frame.snapshot().bounds;
     const float nearest = bounds.empty ? 1.0f : kNearest * glm::length(bounds.high - bounds.low);
-    return largestRadiance(frame.sceneDescription(), frame.snapshot(), std::max(nearest, 1e-6f)) / kLargestHalf;
+    return largestRadiance(frame.sceneDescription(), frame.snapshot(), std::max(nearest, 1e-6f)) /
+           kLargestHalf;
   }
 
   /// What all programs read of the map.
@@ -65,12 +69,13 @@ class LayersPass : public Pass {
   }
 
   /// Where the intervals of each view begin and end.
-  gpu::BufferRef boundsOf(PassContext& frame, const shader::BindingSet& seen, const glm::ivec3& texels) const {
+  gpu::BufferRef boundsOf(PassContext& frame, const shader::BindingSet& seen,
+                          const glm::ivec3& texels) const {
     const auto views = static_cast<std::uint64_t>(map->layerCount);
     const gpu::BufferRef ranges = frame.elements(layers_range::ranges, views, "depths of views"),
-                         bounds = frame.elements(
-                             layers_intervals::bounds,
-                             views * static_cast<std::uint64_t>(depthLayers + 1), "intervals of depth");
+                         bounds = frame.elements(layers_intervals::bounds,
+                                                 views * static_cast<std::uint64_t>(depthLayers + 1),
+                                                 "intervals of depth");
     ranges->clear(0xffffffffu);
     frame.dispatch(frame.program(layers_range::kProgram), {seen, layers_range::ranges(ranges)}, texels);
     const bool population = intervals == Intervals::population && depthLayers > 1;
@@ -80,12 +85,12 @@ class LayersPass : public Pass {
     if (population)
       frame.dispatch(frame.program(layers_count::kProgram),
                      {seen, layers_count::ranges(ranges), layers_count::bins(bins)}, texels);
-    frame.dispatch(frame.program(layers_intervals::Variant{
-                       population ? layers_intervals::Variant::intervalsPopulation
-                                  : layers_intervals::Variant::intervalsEqual}),
-                   {seen, layers_intervals::ranges(ranges), layers_intervals::bins(bins),
-                    layers_intervals::bounds(bounds)},
-                   {map->layerCount, 1, 1});
+    frame.dispatch(
+        frame.program(layers_intervals::Variant{population ? layers_intervals::Variant::intervalsPopulation
+                                                           : layers_intervals::Variant::intervalsEqual}),
+        {seen, layers_intervals::ranges(ranges), layers_intervals::bins(bins),
+         layers_intervals::bounds(bounds)},
+        {map->layerCount, 1, 1});
     return bounds;
   }
 
@@ -102,12 +107,12 @@ class LayersPass : public Pass {
   void fill(PassContext& frame, const shader::BindingSet& seen, const LayeredReflectiveShadowMap& result,
             const gpu::TextureRef& slots) const {
     const gpu::TextureDescription& size = result.radiance->description();
-    frame.dispatch(frame.program(layers_fill::kProgram),
-                   {seen, layers_fill::layers(result.layers),
-                    layers_fill::slotOfTexel(slots, gpu::Sampling::nearest),
-                    layers_fill::radianceImage(result.radiance), layers_fill::normalImage(result.normal),
-                    layers_fill::depthImage(result.depth)},
-                   {size.width, size.height, size.depth});
+    frame.dispatch(
+        frame.program(layers_fill::kProgram),
+        {seen, layers_fill::layers(result.layers), layers_fill::slotOfTexel(slots, gpu::Sampling::nearest),
+         layers_fill::radianceImage(result.radiance), layers_fill::normalImage(result.normal),
+         layers_fill::depthImage(result.depth)},
+        {size.width, size.height, size.depth});
     const auto sizeOf = [&](int level) {
       return glm::ivec2(std::max(size.width >> level, 1), std::max(size.height >> level, 1));
     };
@@ -159,23 +164,22 @@ class LayersPass : public Pass {
         frame, std::max(result.layerCount, 1),
         [&](int count) {
           const std::uint64_t colour = layersOf(count, colours).sizeBytes();
-          return std::vector<std::uint64_t>{colour, colour,
-                                            layersOf(count, gpu::Format::rg32f).sizeBytes()};
+          return std::vector<std::uint64_t>{colour, colour, layersOf(count, gpu::Format::rg32f).sizeBytes()};
         },
         "layers of views");
     result.radiance = frame.texture(layersOf(result.layerCount, colours), "radiance of layers");
     result.normal = frame.texture(layersOf(result.layerCount, colours), "normals of layers");
     result.depth = frame.texture(layersOf(result.layerCount, gpu::Format::rg32f), "depths of layers");
-    result.layers = frame.emptyElements(layers_list::layers, static_cast<std::uint64_t>(result.layerCount),
-                                        "layers");
+    result.layers =
+        frame.emptyElements(layers_list::layers, static_cast<std::uint64_t>(result.layerCount), "layers");
     result.viewLayers = frame.emptyElements(layers_list::viewLayers,
                                             static_cast<std::uint64_t>(map->layerCount), "layers of views");
     if (result.layerCount > 0) {
-      frame.dispatchList(frame.program(layers_list::kProgram),
-                         {seen, layers_list::bounds(bounds), layers_list::numbers(numbers),
-                          layers_list::total(total), layers_list::layers(result.layers),
-                          layers_list::viewLayers(result.viewLayers)},
-                         static_cast<std::uint64_t>(slotCount));
+      frame.dispatchList(
+          frame.program(layers_list::kProgram),
+          {seen, layers_list::bounds(bounds), layers_list::numbers(numbers), layers_list::total(total),
+           layers_list::layers(result.layers), layers_list::viewLayers(result.viewLayers)},
+          static_cast<std::uint64_t>(slotCount));
       fill(frame, seen, result, slots);
     } else {
       for (const gpu::TextureRef& one : {result.radiance, result.normal, result.depth})
@@ -188,8 +192,8 @@ class LayersPass : public Pass {
 }  // namespace
 
 void addLayers(TechniqueRegistry& registry) {
-  registry.add<LayersPass>("layers",
-                           "Views of the lights in layers by depth and normal, filtered (thesis Gomes 2015, Sec. 3.3)");
+  registry.add<LayersPass>(
+      "layers", "Views of the lights in layers by depth and normal, filtered (thesis Gomes 2015, Sec. 3.3)");
 }
 
 }  // namespace lumivox::layered_reflective_shadow_maps

@@ -38,20 +38,20 @@ class OcclusionPass : public Pass {
     result.opacityOf =
         rule == Rule::facing ? RadianceGrid::Opacity::ofVoxel : RadianceGrid::Opacity::ofFinestVoxel;
     const occlusion::Constants constants{.rule = static_cast<int>(static_cast<Rule>(rule))};
-    frame.dispatch(
-        frame.program(occlusion::Variant{occlusion::Variant::levelFinest}, constants),
-        {occlusion::parameters({.coarse = size, .fineLevel = 0, .fine = given}),
-         occlusion::opacity(opacity->opacity, gpu::Sampling::nearest), occlusion::opacityImage(result.opacity)},
-        size);
+    frame.dispatch(frame.program(occlusion::Variant{occlusion::Variant::levelFinest}, constants),
+                   {occlusion::parameters({.coarse = size, .fineLevel = 0, .fine = given}),
+                    occlusion::opacity(opacity->opacity, gpu::Sampling::nearest),
+                    occlusion::opacityImage(result.opacity)},
+                   size);
     for (int level = 1; level < result.filledLevels; ++level) {
       const glm::ivec3 coarse = levelResolution(size, level);
-      frame.dispatch(frame.program(occlusion::Variant{occlusion::Variant::levelCoarser}, constants),
-                     {occlusion::parameters({.coarse = coarse,
-                                             .fineLevel = level - 1,
-                                             .fine = levelResolution(size, level - 1)}),
-                      occlusion::opacity(result.opacity, gpu::Sampling::nearest),
-                      occlusion::opacityImage(result.opacity, level)},
-                     coarse);
+      frame.dispatch(
+          frame.program(occlusion::Variant{occlusion::Variant::levelCoarser}, constants),
+          {occlusion::parameters(
+               {.coarse = coarse, .fineLevel = level - 1, .fine = levelResolution(size, level - 1)}),
+           occlusion::opacity(result.opacity, gpu::Sampling::nearest),
+           occlusion::opacityImage(result.opacity, level)},
+          coarse);
     }
     levels = result;
   }

@@ -18,16 +18,17 @@ struct OpacityLevels {
 template <>
 struct PortTraits<OpacityLevels> {
   static PortKind kind() {
-    return {"OpacityLevels",
-            "one opacity per voxel, one mip per halving",
-            {{"opacity", "d3 r8 with mips", "0..1"}},
-            {{"opacity", "opacity", "1", PortField::Role::fog}},
-            "voxels with an opacity above 0",
-            {{"filledLevels", "mip levels that hold values, finest first; 0: all that the texture has",
-              "undefined memory is read as opacity", "of coarser levels"},
-             {"opacityOf",
-              "whether the opacity of a coarser voxel is that across the whole voxel, or along a path of one finest voxel in it",
-              "coarser voxels are too opaque or too transparent", "of coarser levels"}}};
+    return {
+        "OpacityLevels",
+        "one opacity per voxel, one mip per halving",
+        {{"opacity", "d3 r8 with mips", "0..1"}},
+        {{"opacity", "opacity", "1", PortField::Role::fog}},
+        "voxels with an opacity above 0",
+        {{"filledLevels", "mip levels that hold values, finest first; 0: all that the texture has",
+          "undefined memory is read as opacity", "of coarser levels"},
+         {"opacityOf",
+          "whether the opacity of a coarser voxel is that across the whole voxel, or along a path of one finest voxel in it",
+          "coarser voxels are too opaque or too transparent", "of coarser levels"}}};
   }
   static int levelsOf(const OpacityLevels& port) {
     return port.filledLevels == 0 ? port.opacity->description().levels : port.filledLevels;
