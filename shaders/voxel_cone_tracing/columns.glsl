@@ -1,7 +1,7 @@
 // A coarse voxel as it is seen along an axis: the children of a column are composited front to back from either side, and the columns are
 // averaged (Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3). Including files say before what a child looks like, vec4 higherFace(int
 // axis, ivec3 child) and lowerFace.
-#include "children.glsl"
+#include "common/coarser_voxel.glsl"
 
 // Means over the columns along an axis.
 void lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio, out vec4 higher, out vec4 lower) {

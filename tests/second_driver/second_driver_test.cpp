@@ -149,6 +149,7 @@ const std::map<std::string, std::vector<std::string>> kCases = {
     {"implicit visibility", {"implicit_visibility", "implicit_visibility_lights"}},
     {"light propagation volumes", {"light_propagation_volumes", "light_propagation_volumes_voxels"}},
     {"near field voxels", {"near_field_voxels", "near_field_voxels_occlusion", "voxel_path_tracing"}},
+    {"layers of maps", {"layered_reflective_shadow_maps"}},
     {"media", {"volumetric_smoke"}},
     {"dense grids", {"voxel_cone_tracing", "voxel_cone_tracing_lobes", "voxel_cone_tracing_soft_shadows"}},
     {"a lens", {"voxel_cone_tracing_depth_of_field"}},
@@ -177,6 +178,9 @@ TEST_CASE("a second driver makes the same images: light propagation volumes") {
 }
 TEST_CASE("a second driver makes the same images: near field voxels") {
   CHECK(differing(kCases.at("near field voxels")) == kNone);
+}
+TEST_CASE("a second driver makes the same images: layers of maps") {
+  CHECK(differing(kCases.at("layers of maps")) == kNone);
 }
 TEST_CASE("a second driver makes the same images: media") {
   CHECK(differing(kCases.at("media")) == kNone);

@@ -8,7 +8,8 @@
 #pragma lumivox require STORE != clipmap
 #pragma lumivox require !CHANGED && PLACES != clipmap && (PLACES == octree) == (STORE == octree)
 layout(local_size_x = 64) in;
-#include "march.glsl"
+#include "store.glsl"
+#include "common/cone_march.glsl"
 #include "common/fragments.glsl"
 #include "../bricks.glsl"
 

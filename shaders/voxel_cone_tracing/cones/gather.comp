@@ -7,7 +7,8 @@
 // To which side the voxels of the dense grid shine.
 #pragma lumivox axis LOBES 0 1
 #pragma lumivox require !LOBES || STORE == dense
-#include "march.glsl"
+#include "store.glsl"
+#include "common/cone_march.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -36,75 +37,6 @@ layout(binding = 5) uniform sampler2D gSpecular;
 layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
-#if DIFFUSE
-// Where in its stratum each cone of a pixel lies, along the square of the radius and around, both in turns: in the middle and at 0, or of
-// a sequence that fills the pattern's squares evenly (R2: Roberts 2018).
-vec2 placeInStratum() {
-  if (pattern == 1) return vec2(0.5, 0.0);
-  const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
-  uvec2 place = gl_GlobalInvocationID.xy % uint(pattern);
-  return fract(0.5 + float(place.y * uint(pattern) + place.x) * kR2);
-}
-#endif
-
-// A cone of a pixel, and what its radiance counts for in a sum.
-struct Cone {
-  vec3 direction;
-  float tanHalfAngle;
-  float cosTheta;  // between the axis and the normal
-  float weight;
-};
-
-#if DIFFUSE
-// Thesis Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
-const int kPublishedCones = 5;
-const float kTilted = 0.70710678118654752440;
-
-// Cone `i` of the hemisphere.
-Cone diffuseCone(int i, vec3 normal, vec2 place) {
-  vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
-  Cone cone;
-  if (publishedCones != 0) {
-    vec3 side = (i & 1) != 0 ? tangent : bitangent;
-    cone.direction = i == 0 ? normal : normalize(normal + (i <= 2 ? side : -side));
-    cone.tanHalfAngle = 0.5 * coneRatio;
-    cone.cosTheta = i == 0 ? 1.0 : kTilted;
-    cone.weight = i == 0 ? 1.0 : kTilted;
-  } else {
-    cone.direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cone.cosTheta, cone.tanHalfAngle);
-    cone.weight = 1.0;
-  }
-  return cone;
-}
-
-// By what the sum is divided. The five of the listing are not divided, so that a constant environment gains radiance; here they are by the sum of
-// their weights, 1 + 4 / sqrt 2.
-float diffuseWeights() { return publishedCones != 0 ? 1.0 + 4.0 * kTilted : float(coneCount); }
-#endif
-
-#if GLOSSY
-const uint kGlossyCone = 0xffffu;  // number of the first one
-
-// Cone `i` of the Phong lobe cos^n around the mirror direction. One cone is as wide as the lobe's solid angle; several have equal shares of the
-// lobe, each as wide as its share, and those below the horizon have no weight.
-Cone glossyCone(int i, vec3 normal, vec3 mirror, float exponent) {
-  Cone cone;
-  cone.direction = mirror;
-  float cosHalfAngle = cosHalfAngleOfLobe(exponent);
-  if (glossyCones > 1) {
-    vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent);
-    float share = (float(i) + 0.5) / float(glossyCones), angle = float(i) * kGoldenAngle;
-    float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(max(1.0 - cosAxis * cosAxis, 0.0));
-    cone.direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
-    // The density of the lobe there, (n + 1) / (2 pi) cos^n, times the solid angle 2 pi (1 - cos(half angle)) is the share.
-    cosHalfAngle = max(1.0 - 1.0 / (float(glossyCones) * (exponent + 1.0) * pow(cosAxis, exponent)), 0.5);
-  }
-  cone.tanHalfAngle = tanOfHalfAngle(cosHalfAngle);
-  cone.cosTheta = cone.weight = max(dot(cone.direction, normal), 0.0);
-  return cone;
-}
-#endif
-
 void main() {
   ivec2 gathered = ivec2(gl_GlobalInvocationID.xy), size = textureSize(gPosition, 0);
   if (any(greaterThanEqual(every * gathered, size))) return;
@@ -120,7 +52,7 @@ void main() {
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
     if (arrivingDiffuse != 0) albedo = vec3(1.0);
-    vec2 place = placeInStratum();
+    vec2 place = placeInStratum(gl_GlobalInvocationID.xy, pattern);
     if (any(greaterThan(albedo, vec3(0.0)))) diffuseCones = publishedCones != 0 ? kPublishedCones : coneCount;
 #endif
 #if GLOSSY
@@ -134,11 +66,16 @@ void main() {
       Cone cone;
       uint number = uint(i);
 #if DIFFUSE
-      if (i < diffuseCones) cone = diffuseCone(i, normal, place);
+      if (i < diffuseCones) {
+        if (publishedCones != 0)
+          cone = publishedCone(i, normal, 0.5 * coneRatio);
+        else
+          cone = diffuseCone(i, coneCount, normal, place);
+      }
 #endif
 #if GLOSSY
       if (i >= diffuseCones) {
-        cone = glossyCone(i - diffuseCones, normal, mirror, specular.w);
+        cone = glossyCone(i - diffuseCones, glossyCones, normal, mirror, specular.w);
         number = kGlossyCone + uint(i - diffuseCones);
       }
 #endif
@@ -153,7 +90,7 @@ void main() {
     }
 #if DIFFUSE
     // Mean of the arriving radiance over the hemisphere, weighted by the cosine.
-    if (diffuseCones > 0) diffuse = albedo * (diffuse / diffuseWeights());
+    if (diffuseCones > 0) diffuse = albedo * (diffuse / (publishedCones != 0 ? kPublishedWeights : float(coneCount)));
 #endif
 #if GLOSSY
     // Mean over the lobe of the arriving radiance times the cosine of the surface: the integral of both over the specular albedo.

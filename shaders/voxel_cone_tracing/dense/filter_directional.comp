@@ -19,7 +19,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
 
 #include "common/cones.glsl"
-#include "../children.glsl"
+#include "common/coarser_voxel.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 coarse;      // voxels of the level that is written

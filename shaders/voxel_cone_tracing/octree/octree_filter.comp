@@ -13,7 +13,7 @@
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox require !LIT || (!CHANGED && !DIRECTIONS)
 layout(local_size_x = 64) in;
-#include "../children.glsl"
+#include "common/coarser_voxel.glsl"
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
 #if CHANGED

@@ -75,10 +75,10 @@ class GatherPass : public Pass {
     const gather::Variant variant{.diffuse = diffuse.wanted(),
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,
                                   .lobes = lobes.present(),
-                                  .environment = frame.traits().environment,
-                                  .medium = bound.axis,
                                   .store = input.axis,
-                                  .faces = input.faces};
+                                  .faces = input.faces,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis};
     const int every = 1 << static_cast<int>(static_cast<Resolution>(resolution)), side = pattern;
     const glm::ivec3 gathered =
         (pixels(frame) + glm::ivec3(every - 1, every - 1, 0)) / glm::ivec3(every, every, 1);

@@ -1,5 +1,6 @@
 // Cones through a store of light and opacity, as every pass that traces cones takes them: which store, and
-// how they step through it. GLSL side: shaders/voxel_cone_tracing/cones/march.glsl and store.glsl.
+// how they step through it. GLSL side: shaders/common/cone_march.glsl and
+// shaders/voxel_cone_tracing/cones/store.glsl.
 #pragma once
 
 #include "../clipmap/radiance_clipmap.h"

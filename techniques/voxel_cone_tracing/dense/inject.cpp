@@ -245,10 +245,10 @@ class Injection {
     sums.voxels->clear(0u);
     const MediaBinding bound(frame, light_.media, !store.holdsMedia);
     const bounce::Variant variant{.directions = sums.directional,
-                                  .environment = frame.traits().environment,
-                                  .medium = bound.axis,
                                   .store = store.axis,
                                   .faces = store.faces,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis,
                                   .places = sums.kind};
     // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
     // nothing in a closed room. With one value for all sides what they begin in is the surface itself.

@@ -1,14 +1,22 @@
-// Radiance along a cone through a store: Crassin et al. 2011, Sec. 7; thesis 004, Sec. 4.2.1, Listing 4.13 (thesis_cone_tracing has it as
-// printed).
+// The cones that a surface sends, and the radiance along a cone through a store: Crassin et al. 2011, Sec. 7; thesis 004, Sec. 4.2.1,
+// Listings 4.11 to 4.13 (thesis_cone_tracing has them as printed). An including file includes its store before, which says
+//   StoreSample      what a step looks like: rgb radiance / storeUnit times the opacity a of some length, and the opacity of the step
+//   storeUnit        W/(sr m^2) that the value 1 stands for
+//   coneApex, coneTangent   variables of the cone that is traced
+//   vec2 insideStore(vec3 origin, vec3 direction), float finestVoxel(vec3 at), float longestStep(float size),
+//   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
+// as shaders/voxel_cone_tracing/cones/store.glsl explains them.
+#ifndef LUMIVOX_CONE_MARCH
+#define LUMIVOX_CONE_MARCH
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
+#include "common/cones.glsl"
 #include "common/random.glsl"
-#include "store.glsl"
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
 
-// C++ side: ConeMarch in techniques/voxel_cone_tracing/cones/march.h.
+// C++ side: ConeMarch in techniques/voxel_cone_tracing/cones/march.h, and gather.cpp of layered_reflective_shadow_maps.
 layout(std140, binding = 2) uniform March {
   vec3 environment;   // radiance of the environment
   float maxDistance;  // m
@@ -96,3 +104,71 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
 #endif
   return radiance;
 }
+
+// ---- the cones that a surface sends ----
+
+// A cone of a pixel, and what its radiance counts for in a sum.
+struct Cone {
+  vec3 direction;
+  float tanHalfAngle;
+  float cosTheta;  // between the axis and the normal
+  float weight;
+};
+
+// Where in its stratum each cone of a pixel lies, along the square of the radius and around, both in turns: in the middle and at 0, or of
+// a sequence that fills squares of `pattern` pixels evenly (R2: Roberts 2018).
+vec2 placeInStratum(uvec2 pixel, int pattern) {
+  if (pattern == 1) return vec2(0.5, 0.0);
+  const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
+  uvec2 place = pixel % uint(pattern);
+  return fract(0.5 + float(place.y * uint(pattern) + place.x) * kR2);
+}
+
+// Cone `i` of `count` of equal weight over the hemisphere.
+Cone diffuseCone(int i, int count, vec3 normal, vec2 place) {
+  vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
+  Cone cone;
+  cone.direction = cosineCone(i, count, place, tangent, bitangent, normal, cone.cosTheta, cone.tanHalfAngle);
+  cone.weight = 1.0;
+  return cone;
+}
+
+// Thesis Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
+const int kPublishedCones = 5;
+const float kTilted = 0.70710678118654752440;
+// By what their sum is divided. The five of the listing are not divided, so that a constant environment gains radiance; here they are by the
+// sum of their weights, 1 + 4 / sqrt 2.
+const float kPublishedWeights = 1.0 + 4.0 * kTilted;
+Cone publishedCone(int i, vec3 normal, float tanHalfAngle) {
+  vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
+  Cone cone;
+  vec3 side = (i & 1) != 0 ? tangent : bitangent;
+  cone.direction = i == 0 ? normal : normalize(normal + (i <= 2 ? side : -side));
+  cone.tanHalfAngle = tanHalfAngle;
+  cone.cosTheta = i == 0 ? 1.0 : kTilted;
+  cone.weight = i == 0 ? 1.0 : kTilted;
+  return cone;
+}
+
+const uint kGlossyCone = 0xffffu;  // number of the first one
+
+// Cone `i` of the Phong lobe cos^n around the mirror direction. One cone is as wide as the lobe's solid angle; several have equal shares of the
+// lobe, each as wide as its share, and those below the horizon have no weight.
+Cone glossyCone(int i, int count, vec3 normal, vec3 mirror, float exponent) {
+  Cone cone;
+  cone.direction = mirror;
+  float cosHalfAngle = cosHalfAngleOfLobe(exponent);
+  if (count > 1) {
+    vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent);
+    float share = (float(i) + 0.5) / float(count), angle = float(i) * kGoldenAngle;
+    float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(max(1.0 - cosAxis * cosAxis, 0.0));
+    cone.direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
+    // The density of the lobe there, (n + 1) / (2 pi) cos^n, times the solid angle 2 pi (1 - cos(half angle)) is the share.
+    cosHalfAngle = max(1.0 - 1.0 / (float(count) * (exponent + 1.0) * pow(cosAxis, exponent)), 0.5);
+  }
+  cone.tanHalfAngle = tanOfHalfAngle(cosHalfAngle);
+  cone.cosTheta = cone.weight = max(dot(cone.direction, normal), 0.0);
+  return cone;
+}
+
+#endif

@@ -1,4 +1,6 @@
-// A coarse voxel from its children. Radiance is pre-multiplied by opacity.
+// A coarse voxel from its children (Crassin et al. 2011, Sec. 5). Radiance is pre-multiplied by opacity.
+#ifndef LUMIVOX_COARSER_VOXEL
+#define LUMIVOX_COARSER_VOXEL
 #include "common/cones.glsl"
 
 // Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
@@ -38,3 +40,5 @@ vec4 seenThrough(vec4 child[8]) {
   vec4 z = pair(child[0], child[4]) + pair(child[1], child[5]) + pair(child[2], child[6]) + pair(child[3], child[7]);
   return facing(x, y, z) / 8.0;
 }
+
+#endif

@@ -1,0 +1,123 @@
+// Opacities in voxels, and light in layers of reflective shadow maps, as the store that cones read: thesis 004, Sec. 3.3 (Sugihara,
+// Rauwendaal & Salvi 2014), Fig. 43 b. The functions are those of shaders/voxel_cone_tracing/cones/store.glsl.
+#pragma lumivox axis LIGHTS 0 1
+#include "common/cones.glsl"
+#include "common/lights.glsl"
+#include "layer.glsl"
+
+struct StoreSample {
+  vec4 value;     // rgb radiance / storeUnit, multiplied by the opacity a of voxels; all 0 where there is nothing
+  float opacity;  // of the step
+};
+
+layout(std140, binding = 1) uniform Store {
+  vec3 storeLow;                  // m
+  float storeVoxel;               // finest voxels, m
+  vec3 storeExtent;               // m
+  float storeCoarsest;            // coarsest level
+  float storeUnit;                // W/(sr m^2) that the value 1 stands for
+  int storeOpacityOfFinestVoxel;  // 1: of a path of one finest voxel's length; 0: across the whole voxel
+  float slab;                     // depths that count as those of a step, in voxels that are read
+  int firstLight, lightsAtOnce;   // of this dispatch
+  int firstLayer, layersAtOnce;   // of each view
+};
+layout(binding = 4) uniform sampler3D opacityGrid;
+#if LIGHTS
+layout(binding = 6) uniform sampler2DArray radianceLayers;
+layout(binding = 7) uniform sampler2DArray normalLayers;
+layout(binding = 8) uniform sampler2DArray depthLayers;
+layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
+layout(std430, binding = 7) readonly buffer Layers { Layer layers[]; };
+layout(std430, binding = 8) readonly buffer ViewLayers { uvec2 viewLayers[]; };  // the first and their number
+
+layout(constant_id = 2) const int shareRule = 0;   // kNormal, kChebyshev
+layout(constant_id = 4) const int facingRule = 1;  // 0: normals are not looked at
+layout(constant_id = 5) const int slantRule = 1;   // 1: the slab is as thick along the normal of a slanted surface; 0: along the view
+const int kNormal = 0, kChebyshev = 1;
+const float kLeastSlant = 0.2;  // cosine: a more grazing view knows too little of the surface
+
+// Of normally distributed depths, the share below x standard deviations (Page 1977), within 3e-4.
+float belowNormal(float x) { return 0.5 + 0.5 * tanh(clamp(0.79788456 * (x + 0.044715 * x * x * x), -20.0, 20.0)); }
+
+// Chebyshev's inequality (Donnelly & Lauritzen 2006): the most that can lie beyond a depth.
+float mostBeyond(float depth, float mean, float variance) {
+  float off = depth - mean;
+  return off <= 0.0 ? 1.0 : variance / (variance + off * off);
+}
+
+// The share of the depths of a layer that lie between two.
+float shareBetween(vec2 ends, float mean, float variance) {
+  const float kLeast = 1e-6;  // of a plane across the view, which rounds
+  variance = max(variance, kLeast);
+  if (shareRule == kChebyshev) return max(mostBeyond(ends.x, mean, variance) - mostBeyond(ends.y, mean, variance), 0.0);
+  vec2 off = (ends - mean) * inversesqrt(variance);
+  return max(belowNormal(off.y) - belowNormal(off.x), 0.0);
+}
+
+// What the layers of a view shine from a point against a direction, over the unit. `size`: of the voxels that are read.
+vec3 shoneByView(LightSample light, int view, vec3 at, vec3 direction, float size) {
+  uvec2 own = viewLayers[view];
+  vec4 clip = views[view] * vec4(at, 1.0);
+  if (own.y == 0u || !(clip.w > 0.0)) return vec3(0.0);
+  vec2 place = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+  if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) return vec3(0.0);
+  bool parallel = light.kind == kLightDirectional;
+  float depth = parallel ? dot(at, light.direction) : clip.w;
+  // Texels as wide as voxels: both are read by a kernel twice as wide.
+  float level = log2(max(size / (light.texelWidth * (parallel ? 1.0 : depth)), 1.0));
+  float thickness = slab * size, most = slantRule != 0 ? thickness / kLeastSlant : thickness;
+  vec3 sum = vec3(0.0), toView = parallel ? light.direction : normalize(at - light.position);
+  for (uint i = uint(firstLayer); i < min(own.y, uint(firstLayer + layersAtOnce)); ++i) {
+    Layer layer = layers[own.x + i];
+    float off = depth - layer.middle;
+    if (abs(off) > layer.halfWidth + 0.5 * most) continue;
+    vec3 texcoord = vec3(place, float(own.x + i));
+    vec4 radiance = textureLod(radianceLayers, texcoord, level);
+    if (!(radiance.a > 0.0)) continue;
+    vec3 normal = textureLod(normalLayers, texcoord, level).xyz;
+    if (facingRule != 0 && dot(normal, direction) >= 0.0) continue;
+    float slant = abs(dot(normal, toView)) * inversesqrt(max(dot(normal, normal), 1e-12));
+    float along = slantRule != 0 ? thickness / max(slant, kLeastSlant) : thickness;
+    vec2 moments = textureLod(depthLayers, texcoord, level).xy / radiance.a;
+    vec2 ends = (off + vec2(-0.5, 0.5) * along) / layer.halfWidth;
+    sum += shareBetween(ends, moments.x, moments.y - moments.x * moments.x) * radiance.rgb;
+  }
+  return sum;
+}
+
+vec3 shoneFrom(vec3 at, vec3 direction, float size) {
+  vec3 sum = vec3(0.0);
+  for (int i = firstLight; i < firstLight + lightsAtOnce; ++i) {
+    LightSample light = lights[i];
+    if (light.firstView < 0) continue;
+    int view = light.firstView + (light.viewCount > 1 ? cubeFace(at - light.position) : 0);
+    sum += shoneByView(light, view, at, direction, size);
+  }
+  return sum;
+}
+#endif
+
+// Of the cone that is traced.
+vec3 coneApex;      // m
+float coneTangent;  // of its half angle
+
+vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, storeExtent, origin, direction); }
+
+float finestVoxel(vec3 at) { return storeVoxel; }
+
+float longestStep(float size) { return 1e30; }
+
+StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
+  float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
+  float opacity = textureLod(opacityGrid, (at - storeLow) / storeExtent, level + blend).r;
+  if (opacity <= 0.0) return StoreSample(vec4(0.0), 0.0);
+  float through = max(1.0 - opacity, 0.0);
+  float ofStep = storeOpacityOfFinestVoxel != 0
+                     ? stepOpacityOf(through, stride / storeVoxel)
+                     : stepOpacityOf(throughVoxel(through, blend), stride / (exp2(level) * storeVoxel));
+  vec3 shone = vec3(0.0);
+#if LIGHTS
+  shone = shoneFrom(at, direction, max(size, storeVoxel));
+#endif
+  return StoreSample(vec4(opacity * shone, opacity), ofStep);
+}
