@@ -48,6 +48,7 @@ std::uint64_t bytesOf(const PipelineExecutor& executor, const char* pass, const 
   return bytes;
 }
 
+/// Both pipelines on a scene, which outlives them.
 class Pair {
  public:
   Pair(Machine& machine, const Scene& scene, int resolution, int size)
@@ -77,7 +78,8 @@ double mebibytes(std::uint64_t bytes) {
 }
 
 void compareBytes(Machine& machine, int resolution, int size) {
-  Pair pair(machine, cornellUnder(0), resolution, size);
+  const Scene scene = cornellUnder(0);
+  Pair pair(machine, scene, resolution, size);
   pair.ofLayered();
   pair.ofGrid();
   const double ours = mebibytes(pair.opacityBytes() + pair.layerBytes()), grid = mebibytes(pair.gridBytes());
@@ -89,7 +91,8 @@ void compareBytes(Machine& machine, int resolution, int size) {
 
 void compareLights(Machine& machine, int resolution, int size, const std::vector<int>& numbers) {
   for (const int spots : numbers) {
-    Pair pair(machine, cornellUnder(spots), resolution, size);
+    const Scene scene = cornellUnder(spots);
+    Pair pair(machine, scene, resolution, size);
     std::vector<double> ratios;
     for (int repeat = -1; repeat < machine.repeats; ++repeat) {
       const double layered = pair.ofLayered(), grid = pair.ofGrid();

@@ -5,7 +5,9 @@
 //   coneApex, coneTangent   variables of the cone that is traced
 //   vec2 insideStore(vec3 origin, vec3 direction), float finestVoxel(vec3 at), float longestStep(float size),
 //   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
-// as shaders/voxel_cone_tracing/cones/store.glsl explains them.
+// as shaders/voxel_cone_tracing/cones/store.glsl explains them. Where light costs more than opacity, a store defines LIGHT_OF_STEP and says
+// the light of those steps alone that count: readStore then tells the opacities, and
+//   vec3 lightOfStep(vec3 at, vec3 direction, float size)   radiance / storeUnit there
 #ifndef LUMIVOX_CONE_MARCH
 #define LUMIVOX_CONE_MARCH
 #pragma lumivox axis ENVIRONMENT 0 1
@@ -84,6 +86,9 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
 #if MEDIUM != MEDIUM_NONE
     vec3 thickness = opticalDepth(apex + direction * distance, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
+#endif
+#ifdef LIGHT_OF_STEP
+    if (found.value.a > 0.0) found.value.rgb = found.value.a * lightOfStep(apex + direction * (distance + 0.5 * stride), direction, wanted);
 #endif
     if (found.value.a > 0.0) {
       // Pre-multiplied radiance scales with the opacity; listing 4.13 mixes pre-multiplied and plain radiance, which this does not.

@@ -3,7 +3,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "slots.glsl"
 
-layout(std430, binding = 0) buffer Ranges { uvec2 ranges[]; };  // a view's lowest, and the complement of its highest, in the order of words
+layout(std430, binding = 0) buffer Ranges { uint ranges[]; };  // two of a view: its lowest, and the complement of its highest, in the order of words
 
 void main() {
   ivec3 texel = ivec3(gl_GlobalInvocationID);
@@ -11,6 +11,6 @@ void main() {
   MapTexel seen = texelOf(texel);
   if (!seen.covered) return;
   uint depth = inOrder(depthOf(lights[seen.light], texel.z, seen.posWorld));
-  atomicMin(ranges[texel.z].x, depth);
-  atomicMin(ranges[texel.z].y, ~depth);
+  atomicMin(ranges[2 * texel.z], depth);
+  atomicMin(ranges[2 * texel.z + 1], ~depth);
 }

@@ -6,7 +6,7 @@
 #include "layer.glsl"
 
 struct StoreSample {
-  vec4 value;     // rgb radiance / storeUnit, multiplied by the opacity a of voxels; all 0 where there is nothing
+  vec4 value;     // a opacity of voxels; rgb is filled in by the march
   float opacity;  // of the step
 };
 
@@ -115,9 +115,10 @@ StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   float ofStep = storeOpacityOfFinestVoxel != 0
                      ? stepOpacityOf(through, stride / storeVoxel)
                      : stepOpacityOf(throughVoxel(through, blend), stride / (exp2(level) * storeVoxel));
-  vec3 shone = vec3(0.0);
-#if LIGHTS
-  shone = shoneFrom(at, direction, max(size, storeVoxel));
-#endif
-  return StoreSample(vec4(opacity * shone, opacity), ofStep);
+  return StoreSample(vec4(0.0, 0.0, 0.0, opacity), ofStep);
 }
+
+#if LIGHTS
+#define LIGHT_OF_STEP
+vec3 lightOfStep(vec3 at, vec3 direction, float size) { return shoneFrom(at, direction, max(size, storeVoxel)); }
+#endif

@@ -72,7 +72,7 @@ class LayersPass : public Pass {
   gpu::BufferRef boundsOf(PassContext& frame, const shader::BindingSet& seen,
                           const glm::ivec3& texels) const {
     const auto views = static_cast<std::uint64_t>(map->layerCount);
-    const gpu::BufferRef ranges = frame.elements(layers_range::ranges, views, "depths of views"),
+    const gpu::BufferRef ranges = frame.elements(layers_range::ranges, 2 * views, "depths of views"),
                          bounds = frame.elements(layers_intervals::bounds,
                                                  views * static_cast<std::uint64_t>(depthLayers + 1),
                                                  "intervals of depth");
@@ -102,6 +102,17 @@ class LayersPass : public Pass {
             texels.height,
             std::max(count, 1),
             gpu::fullLevelCount(texels.width, texels.height)};
+  }
+
+  /// Of so many layers, in parts that a device with small buffers has room for too: they become textures.
+  std::vector<std::uint64_t> bytesOf(int count, gpu::Format colours) const {
+    constexpr std::uint64_t kPart = std::uint64_t{64} << 20;
+    std::uint64_t bytes =
+        2 * layersOf(count, colours).sizeBytes() + layersOf(count, gpu::Format::rg32f).sizeBytes();
+    std::vector<std::uint64_t> parts;
+    for (; bytes > kPart; bytes -= kPart) parts.push_back(kPart);
+    parts.push_back(bytes);
+    return parts;
   }
 
   void fill(PassContext& frame, const shader::BindingSet& seen, const LayeredReflectiveShadowMap& result,
@@ -161,11 +172,7 @@ class LayersPass : public Pass {
     }
     const gpu::Format colours = precision == Precision::half ? gpu::Format::rgba16f : gpu::Format::rgba32f;
     requireRoom(
-        frame, std::max(result.layerCount, 1),
-        [&](int count) {
-          const std::uint64_t colour = layersOf(count, colours).sizeBytes();
-          return std::vector<std::uint64_t>{colour, colour, layersOf(count, gpu::Format::rg32f).sizeBytes()};
-        },
+        frame, std::max(result.layerCount, 1), [&](int count) { return bytesOf(count, colours); },
         "layers of views");
     result.radiance = frame.texture(layersOf(result.layerCount, colours), "radiance of layers");
     result.normal = frame.texture(layersOf(result.layerCount, colours), "normals of layers");
