@@ -10,8 +10,6 @@ layout(binding = 0) uniform writeonly image2DArray radianceImage;  // half float
 layout(binding = 1) uniform writeonly image2DArray normalImage;
 layout(binding = 2, rg32f) uniform writeonly image2DArray depthImage;
 
-const float kLargestHalf = 65504.0;
-
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(at, imageSize(radianceImage)))) return;
@@ -22,7 +20,7 @@ void main() {
   if (texelFetch(slotOfTexel, texel, 0).r == uint(layer.slot)) {
     MapTexel seen = texelOf(texel);
     // Exitance, the flux of the texel over its area, goes to all sides alike.
-    radiance = vec4(min(texelFetch(rsmFlux, texel, 0).rgb / (kPi * seen.area * unit), kLargestHalf), 1.0);
+    radiance = vec4(min(texelFetch(rsmFlux, texel, 0).rgb / (kPi * seen.area * unit), most), 1.0);
     normal = vec4(seen.normal, 0.0);
     // Plain squares lose their variance far from the light.
     float off = clamp((depthOf(lights[seen.light], layer.view, seen.posWorld) - layer.middle) / layer.halfWidth, -1.0, 1.0);

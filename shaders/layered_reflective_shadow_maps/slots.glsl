@@ -12,6 +12,7 @@ layout(std140, binding = 0) uniform Partition {
   int normalLayers;  // 1, or 6: the sides of a cube
   float unit;        // W/(sr m^2) that the value 1 stands for
   int viewCount;     // of all lights
+  float most;        // that the format of radiance holds
 };
 
 struct MapTexel {

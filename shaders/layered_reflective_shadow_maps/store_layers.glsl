@@ -67,6 +67,7 @@ vec3 shoneByView(LightSample light, int view, vec3 at, vec3 direction, float siz
   float level = log2(max(size / (light.texelWidth * (parallel ? 1.0 : depth)), 1.0));
   float thickness = slab * size, most = slantRule != 0 ? thickness / kLeastSlant : thickness;
   vec3 sum = vec3(0.0), toView = parallel ? light.direction : normalize(at - light.position);
+  float depthOfRay = parallel ? 1.0 : min(depth / max(distance(at, light.position), 1e-12), 1.0);
   for (uint i = uint(firstLayer); i < min(own.y, uint(firstLayer + layersAtOnce)); ++i) {
     Layer layer = layers[own.x + i];
     float off = depth - layer.middle;
@@ -77,7 +78,8 @@ vec3 shoneByView(LightSample light, int view, vec3 at, vec3 direction, float siz
     vec3 normal = textureLod(normalLayers, texcoord, level).xyz;
     if (facingRule != 0 && dot(normal, direction) >= 0.0) continue;
     float slant = abs(dot(normal, toView)) * inversesqrt(max(dot(normal, normal), 1e-12));
-    float along = slantRule != 0 ? thickness / max(slant, kLeastSlant) : thickness;
+    // A slab of that thickness spans so much of the ray to the point, and by the ray's cosine less of the depth along the view's axis.
+    float along = slantRule != 0 ? thickness * depthOfRay / max(slant, kLeastSlant) : thickness;
     vec2 moments = textureLod(depthLayers, texcoord, level).xy / radiance.a;
     vec2 ends = (off + vec2(-0.5, 0.5) * along) / layer.halfWidth;
     sum += shareBetween(ends, moments.x, moments.y - moments.x * moments.x) * radiance.rgb;

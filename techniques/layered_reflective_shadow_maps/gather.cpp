@@ -36,8 +36,7 @@ class GatherPass : public Pass {
       "side of a square of pixels whose cones have different directions, for a filter of that width behind the pass; 1: the same in all pixels"};
   Param<Share> share{
       this, "share", Share::normal,
-      "share of a layer at a step, by mean and variance of its depths; normal: of normally distributed depths; chebyshev: by Chebyshev's inequality, as variance shadow maps have it",
-      published(Share::chebyshev)};
+      "share of a layer at a step, by mean and variance of its depths; normal: of normally distributed depths; chebyshev: by Chebyshev's inequality, as variance shadow maps have it"};
   Param<float> slab{
       this, "slab", 3.0f, within(0.1f, 100.0f),
       "depths that count as those of a step, in voxels that are read; a surface's voxels are read up to 1.5 off it"};

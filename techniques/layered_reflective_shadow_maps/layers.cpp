@@ -1,9 +1,13 @@
 // Views of the lights in layers, so that each can be filtered: thesis Gomes 2015, Sec. 3.3.
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "layered_reflective_shadow_map.h"
 #include "layered_reflective_shadow_maps_shaders.h"
+#include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/light_bounds.h"
@@ -18,6 +22,9 @@ using namespace shaders::layered_reflective_shadow_maps;
 
 /// Half floats end at 65504; filtering adds nothing to the largest.
 constexpr float kLargestHalf = 32768.0f;
+
+/// Of a texture: what OpenGL promises (4.5, table 23.53).
+constexpr int kMostLayers = 2048;
 
 class LayersPass : public Pass {
   // In the order of INTERVALS in layers_intervals.comp.
@@ -59,13 +66,17 @@ class LayersPass : public Pass {
            kLargestHalf;
   }
 
+  /// The largest number that radiance is kept as.
+  float mostOf() const { return precision == Precision::half ? 65504.0f : std::numeric_limits<float>::max(); }
+
   /// What all programs read of the map.
   shader::BindingSet mapOf(float ofUnit) const {
     return {ReflectiveShadowMapBinding(*map),
             shader::UniformSlot<layers_fill::Partition>{"Partition"}({.depthLayers = depthLayers,
                                                                       .normalLayers = normalLayers,
                                                                       .unit = ofUnit,
-                                                                      .viewCount = map->layerCount})};
+                                                                      .viewCount = map->layerCount,
+                                                                      .most = mostOf()})};
   }
 
   /// Where the intervals of each view begin and end.
@@ -171,6 +182,11 @@ class LayersPass : public Pass {
       result.layerCount = static_cast<int>(total->downloadValues<std::uint32_t>().front());
     }
     const gpu::Format colours = precision == Precision::half ? gpu::Format::rgba16f : gpu::Format::rgba32f;
+    if (result.layerCount > kMostLayers)
+      throw Error(fmt::format(
+          "layered_reflective_shadow_maps.layers: {} views make {} layers; expected at most {}: fewer light samples, 'depth_layers' (now {}) or 'normal_layers' (now {})",
+          map->layerCount, result.layerCount, kMostLayers, static_cast<int>(depthLayers),
+          static_cast<int>(normalLayers)));
     requireRoom(
         frame, std::max(result.layerCount, 1), [&](int count) { return bytesOf(count, colours); },
         "layers of views");

@@ -238,14 +238,27 @@ TEST_CASE(
     for (const double cover : covers) sum += cover;
     for (const double cover : covers) CHECK(cover == Approx(sum / 4.0).epsilon(0.05));
   }
-  // With a floor far below, equal intervals are empty between the two. Those of population part either.
-  builder.quad({-24, -80, -24}, {48, 0, 0}, {0, 0, 48}, builder.lambert(0.5f));
-  const ReflectiveShadowMap far = mapOf(builder.scene, 128);
-  const auto layersIn = [&](const char* intervals) {
-    return layersOf(builder.scene, far, {{"intervals", intervals}}).layerCount;
+  // One half of the floor is three times as steep as the other: equal intervals have unequal shares of it.
+  SceneBuilder bent;
+  bent.quad({-8, 0, -8}, {8, -2, 0}, {0, 0, 16}, bent.lambert(0.5f));
+  bent.quad({0, -2, -8}, {8, -6, 0}, {0, 0, 16}, bent.lambert(0.5f));
+  bent.light(LightKind::directional, glm::vec3(1.0f), {}, {0, -1, 0});
+  const ReflectiveShadowMap ofBent = mapOf(bent.scene, 128);
+  const auto sharesOf = [&](const char* intervals) {
+    const LayeredReflectiveShadowMap layers = layersOf(bent.scene, ofBent, {{"intervals", intervals}});
+    const std::vector<float> top = layers.radiance->downloadFloats(layers.radiance->description().levels - 1);
+    double sum = 0.0;
+    std::vector<double> shares;
+    for (std::size_t i = 3; i < top.size(); i += 4) sum += top[i];
+    for (std::size_t i = 3; i < top.size(); i += 4) shares.push_back(top[i] / sum);
+    return shares;
   };
-  CHECK(layersIn("equal") == 2);
-  CHECK(layersIn("population") >= 2);
+  const std::vector<double> equal = sharesOf("equal"), population = sharesOf("population");
+  REQUIRE(equal.size() == 4);
+  REQUIRE(population.size() == 4);
+  CHECK(equal[0] == Approx(0.5).epsilon(0.05));
+  for (int i = 1; i < 4; ++i) CHECK(equal[static_cast<std::size_t>(i)] == Approx(1.0 / 6.0).epsilon(0.05));
+  for (const double share : population) CHECK(share == Approx(0.25).epsilon(0.05));
 }
 
 namespace {
@@ -306,6 +319,88 @@ TEST_CASE("a slanted wall brings its radiance too, and less of it where the slab
   CAPTURE(alongView, byChebyshev);
   CHECK(alongView < 0.97);
   CHECK(byChebyshev < alongView);
+}
+
+TEST_CASE("a wall far off the axis of a light's view brings its radiance with a slab of its own thickness") {
+  // 40 degrees off the axis of a face of the point light's map, square to that axis.
+  SceneBuilder builder;
+  builder.quad({-12, 0, -12}, {0, 0, 24}, {24, 0, 0}, builder.lambert(kAlbedo));
+  const glm::dvec3 light(-5, 6, 0);
+  builder.light(LightKind::point, glm::vec3(400.0f), light);
+  builder.look({0, -9, 0}, {0, 0, 0}, {0, 0, 1}, 0.7, 8, 8);  // whose mirror direction is down
+  // Radiance of the wall below the place that looks: albedo / pi of the irradiance there.
+  const auto seen = [&](double slab) {
+    return gathererOf(builder.scene, 64, 256, above(2.0f, {1, 1, 1, 400.0f}),
+                      {{"glossy_cones", 1}, {"slab", slab}, {"step", 0.05}})
+        .mean("glossy");
+  };
+  const double whole = seen(100.0), own = seen(3.0), half = seen(0.5);
+  CAPTURE(whole, own, half);
+  CHECK(whole > 0.01);
+  CHECK(own == Approx(whole).epsilon(0.05));
+  // A thin slab loses the same share of a wall on the axis, where ray and axis are one.
+  SceneBuilder onAxis;
+  onAxis.quad({-12, 0, -12}, {0, 0, 24}, {24, 0, 0}, onAxis.lambert(kAlbedo));
+  onAxis.light(LightKind::point, glm::vec3(400.0f), {0, 6, 0});
+  onAxis.look({0, -9, 0}, {0, 0, 0}, {0, 0, 1}, 0.7, 8, 8);
+  const auto seenOnAxis = [&](double slab) {
+    return gathererOf(onAxis.scene, 64, 256, above(2.0f, {1, 1, 1, 400.0f}),
+                      {{"glossy_cones", 1}, {"slab", slab}, {"step", 0.05}})
+        .mean("glossy");
+  };
+  const double share = seenOnAxis(0.5) / seenOnAxis(100.0);
+  CAPTURE(share);
+  CHECK(half / whole == Approx(share).epsilon(0.1));
+}
+
+TEST_CASE("floats keep radiance that half floats cannot") {
+  SceneBuilder builder;
+  builder.quad({-12, 0, -12}, {0, 0, 24}, {24, 0, 0}, builder.lambert(kAlbedo));
+  builder.light(LightKind::directional, glm::vec3(1e7f), {}, {0, -1, 0});
+  const LayeredReflectiveShadowMap layers =
+      layersOf(builder.scene, mapOf(builder.scene, 16), {{"precision", "float"}});
+  const std::vector<float> radiance = layers.radiance->downloadFloats(0);
+  CHECK(*std::max_element(radiance.begin(), radiance.end()) == Approx(kAlbedo * 1e7 / kPi).epsilon(1e-3));
+}
+
+TEST_CASE("stripes finer than a voxel bring their mean, whatever lies under the middle of a cone") {
+  for (const float phase : {0.0f, 0.25f, 0.5f, 0.75f}) {
+    SceneBuilder builder;
+    constexpr float kWidth = 0.2f;  // of a stripe; a voxel is 0.77
+    const int white = builder.lambert(0.8f), black = builder.lambert(0.0f);
+    for (int i = 0; i < 120; ++i)
+      builder.quad({-12 + kWidth * (static_cast<float>(i) + 2.0f * phase), 0, -12}, {0, 0, 24},
+                   {kWidth, 0, 0}, i % 2 == 0 ? white : black);
+    builder.light(LightKind::directional, glm::vec3(kIrradiance), {}, {0, -1, 0});
+    builder.look({0, -9, 0}, {0, 0, 0}, {0, 0, 1}, 0.7, 8, 8);
+    CAPTURE(phase);
+    CHECK(gathererOf(builder.scene, 32, 256, above(3.0f, {1, 1, 1, 100.0f}), {{"glossy_cones", 1}})
+              .mean("glossy") == Approx(0.4 * kIrradiance / kPi).epsilon(0.15));
+  }
+}
+
+TEST_CASE("layers that no dispatch can ask together bring what all of them bring at once") {
+  SceneBuilder builder;
+  builder.quad({-12, 0, -12}, {0, 0, 24}, {24, 0, 0}, builder.lambert(kAlbedo));
+  // Boxes of all heights aside, whose tops and sides are layers before that of the floor.
+  for (int i = 0; i < 16; ++i) {
+    const float x = -11.0f + 1.4f * static_cast<float>(i);
+    builder.box({x, 0, 6}, {x + 0.9f, 0.4f * static_cast<float>(i + 1), 7}, builder.lambert(kAlbedo), false);
+  }
+  builder.light(LightKind::directional, glm::vec3(kIrradiance), {}, {-0.3, -1, -0.2});
+  builder.look({0, -9, 0}, {0, 0, 0}, {0, 0, 1}, 0.7, 8, 8);
+  const Settings ofLayers{{"depth_layers", 16}, {"normal_layers", 6}};
+  REQUIRE(layersOf(builder.scene, mapOf(builder.scene, 128), ofLayers).layerCount > 24);
+  const auto seen = [&](double reach) {
+    return gathererOf(builder.scene, 32, 128, above(3.0f, {1, 1, 1, 400.0f}),
+                      {{"glossy_cones", 1}, {"step", 0.05}, {"reach", reach}}, ofLayers)
+        .mean("glossy");
+  };
+  // Behind the floor there is nothing, so that a short cone sees the same; its loops are short enough for all
+  // layers.
+  const double atOnce = seen(5.0);
+  CHECK(atOnce > 0.1);
+  CHECK(seen(0.0) == Approx(atOnce).epsilon(1e-4));
 }
 
 TEST_CASE("behind an occluder there is no light, the less the thicker it is") {
