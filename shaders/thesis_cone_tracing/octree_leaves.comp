@@ -22,10 +22,12 @@ void main() {
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   vec3 value = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
   if (what == kLight) value = value / kPi * ambient;
-  if (what == kNormal) value = 0.5 + 0.5 * unpackNormal(fragment.normal);
+  // Listings 4.9 and 4.23 average packed normals without their coverage, which would pull them to 0, and so to (-1, -1, -1).
+  if (what == kNormal) value = clamp(0.5 + 0.5 * unpackNormal(fragment.normal), 0.0, 1.0);
+  float coverage = what == kNormal ? 1.0 : clamp(blueCoverage.y, 0.0, 1.0);
   uint place = sumsOf(brick, uint(own.x | own.y << 1 | own.z << 2));
   if (stage == kCount)
     countIn(place, value);
   else
-    addTo(place, unitsOf(place, value) * (clamp(blueCoverage.y, 0.0, 1.0) * (1.0 / float(max(sums[place].items, 1u)))));
+    addTo(place, unitsOf(place, value) * (coverage * (1.0 / float(max(sums[place].items, 1u)))));
 }

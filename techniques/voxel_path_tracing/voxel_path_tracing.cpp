@@ -79,6 +79,8 @@ class TracePass : public Pass {
   bool uses(const InBase& input) const override { return &input != &attributes || bounces > 1; }
   int indirectBounces() const override { return bounces; }
   std::string checkParameters() const override {
+    if (roulette && order == Order::backward)
+      return "'roulette' is on and 'order' backward; expected one of both: stored paths do not end";
     return projection.taps() == 1 ? std::string()
                                   : "'taps' is 4; expected 1: a path goes on from one texel's surface";
   }

@@ -67,7 +67,8 @@ TEST_CASE("in a closed room of equal walls N bounces bring L (1 + a + ... + a^(N
   for (std::size_t i = 0; i < arriving.size(); i += 4) CHECK(arriving[i] == Approx(expected).epsilon(1e-4));
 }
 
-TEST_CASE("a thousand bounces at an albedo of 0.999 stay below the series, and do not grow without end") {
+TEST_CASE(
+    "a thousand bounces at an albedo of 0.999 are the series of a thousand, and do not grow without end") {
   Gatherer room = inRoom(1.0f, 0.999f, 1000);
   room.with({{"samples", 1}});
   CHECK(room.arriving()[0] == Approx((1.0 - std::pow(0.999, 1000)) / 0.001).epsilon(1e-3));
@@ -130,7 +131,7 @@ TEST_CASE("paths that end by chance bring the same light on average") {
 }
 
 TEST_CASE("a ray that would begin in a set voxel begins behind it, or ends at once as published") {
-  // Between two walls a voxel apart, paths that are not pushed meet the wall that they leave again.
+  // A floor of two layers: paths that are not pushed out of it meet it where they begin.
   VoxelSet set({12, 12, 12});
   for (int x = 0; x < 12; ++x)
     for (int z = 0; z < 12; ++z) set.insert({x, 0, z}), set.insert({x, 1, z});
@@ -151,6 +152,8 @@ TEST_CASE("what does not belong together is refused with what was expected") {
     CHECK_THROWS_MATCHES(paths.run(), Error, tells);
   };
   refused([](Gatherer&) {}, {}, Tells("'bounces'", 2, "'attributes'"));
+  CHECK_THROWS_MATCHES(inRoom(1.0f, 0.5f, 2).with({{"roulette", "on"}, {"order", "backward"}}).arriving(),
+                       Error, Tells("'roulette'", "'order'"));
   refused([](Gatherer& paths) { paths.in("attributes", attributesOfShell(kRoom + 1, 0.5f)); }, {},
           Tells("'bits'", "'attributes'"));
   ReflectiveShadowMap map = shiningAll(1.0f, 0.5f, kMiddle);

@@ -1,5 +1,6 @@
 // check, fmt, describe and list on real files.
 #include <algorithm>
+#include <set>
 
 #include "lumivox/base/file.h"
 #include "tools/cli_support.h"
@@ -230,7 +231,9 @@ TEST_CASE("describe answers in JSON with numbers in base units, and switches and
   CHECK(member(gather.at("parameters"), "distribution").at("choices") ==
         Json::array({"cosine", "published"}));
   CHECK(member(gather.at("parameters"), "reach").at("unit") == "m");
-  CHECK(described("cones").at(0).at("pass") == "voxel_cone_tracing.gather");
+  std::set<std::string> withCones;
+  for (const Json& one : described("cones")) withCones.insert(one.at("pass").get<std::string>());
+  CHECK(withCones.contains("voxel_cone_tracing.gather"));
   CHECK(described("RadianceGrid").at(0).at("exported").size() == 2);
   const Json heeded = described("RadianceGrid").at(0).at("heeded");
   REQUIRE(heeded.size() == 4);
