@@ -17,8 +17,9 @@ namespace {
 const glm::ivec3 kA(1, 1, 1), kB(2, 1, 1);
 constexpr float kColourA = 0.5f, kColourB = 0.25f;
 
-VoxelFragments twoVoxels(const glm::ivec3& b = kB) {
-  return listOf({fragmentAt(kA, glm::vec3(kColourA)), fragmentAt(b, glm::vec3(kColourB))}, glm::ivec3(4));
+VoxelFragments twoVoxels(const glm::ivec3& b = kB, float coverage = 1.0f) {
+  return listOf({fragmentAt(kA, glm::vec3(kColourA), coverage), fragmentAt(b, glm::vec3(kColourB), coverage)},
+                glm::ivec3(4));
 }
 
 const glm::vec4& at(const std::map<Cell, Brick>& bricks, const Cell& brick, int x, int y, int z) {
@@ -168,6 +169,16 @@ TEST_CASE(
     }
     checkRoot(octree, {0.5 * light, 1.5 * light, 0.0});
   }
+}
+
+TEST_CASE("fragments that cover half of their voxels face the light as those that cover all of them") {
+  const ReflectiveShadowMap photons = photonsOnA(1, {static_cast<float>(kPi)});
+  const auto lightOf = [&](float coverage) {
+    return at(bricksOf(relit(twoVoxels(kB, coverage), photons), 0), {0, 0, 0}, 1, 2, 2).x;
+  };
+  // Their colour counts by half.
+  CHECK(lightOf(1.0f) > 0.1f);
+  CHECK(lightOf(0.5f) == Approx(0.5f * lightOf(1.0f)).epsilon(1e-4));
 }
 
 TEST_CASE(
