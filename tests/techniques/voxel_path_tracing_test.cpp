@@ -114,6 +114,32 @@ TEST_CASE("light that is carried back over stored surfaces is light that is adde
   }
 }
 
+TEST_CASE("light of Phong lobes that is carried back is light that is added as it is met") {
+  // A room that shines, whose walls have a lobe too: what the map knows of the second surface counts.
+  const auto traced = [](const char* order, const glm::vec4& ofWalls) {
+    SceneBuilder inside;
+    inside.look({6.2, 9.1, 5.4}, {6.2, 5.1, 6.4}, {0, 0, 1}, 0.5, 8, 8);
+    Gatherer room =
+        tracer(gridOf(shellOf(kRoom)), kMiddle, kUp, inside.scene, 0.3f, {0.5f, 0.4f, 0.2f, 12.0f});
+    ReflectiveShadowMap map = shiningAll(0.25f, 0.4f, kMiddle);
+    map.specular = filled(layers(4, 4, map.layerCount), ofWalls);
+    room.map(map);
+    room.in("attributes", attributesOfShell(kRoom, 0.4f));
+    return std::move(room.with(
+        {{"samples", 32}, {"bounces", 4}, {"tolerance", 1000}, {"front", "off"}, {"order", order}}));
+  };
+  const glm::vec4 sharp(0.5f, 0.5f, 0.5f, 30.0f), dull(0.0f);
+  for (const char* output : {"arriving", "glossy"}) {
+    Gatherer forward = traced("forward", sharp), backward = traced("backward", sharp),
+             without = traced("forward", dull);
+    const std::vector<float> first = forward.floats(output), second = backward.floats(output);
+    CAPTURE(output);
+    for (std::size_t i = 0; i < first.size(); ++i)
+      CHECK(second[i] == Approx(first[i]).epsilon(1e-5).margin(1e-7));
+    CHECK(forward.mean(output) > 1.2 * without.mean(output));
+  }
+}
+
 TEST_CASE("frames that accumulate are one frame of as many paths, to the bit") {
   const auto* order = GENERATE("forward", "backward");
   Gatherer once = underOpenSky(3, 24), often = underOpenSky(3, 6);
