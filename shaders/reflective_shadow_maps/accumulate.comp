@@ -10,7 +10,7 @@ layout(std140, binding = 0) uniform Parameters {
   uint addends;
   uint firstAddend;   // in the tree
   uint firstSum;
-  uint width, rows, together, ways;  // TexelOrder
+  uint width, height, rows, together, ways;  // TexelOrder
 };
 #if OF == OF_TEXELS
 layout(binding = 0) uniform sampler2DArray rsmFlux;
@@ -22,7 +22,7 @@ void main() {
   if (first >= addends) return;
   float sum = 0.0;
 #if OF == OF_TEXELS
-  TexelOrder order = TexelOrder(width, rows, together, ways);
+  TexelOrder order = TexelOrder(width, height, rows, together, ways);
   ivec3 texel = texelOf(first, order);
 #endif
   for (uint i = first; i < min(first + kFan, addends); ++i) {

@@ -11,14 +11,14 @@ layout(std140, binding = 0) uniform Parameters {
   uint levels;   // of sums
   uint samples;
   int area;      // of lights: taken.glsl
-  uint width, rows, together, ways;  // TexelOrder
+  uint width, height, rows, together, ways;  // TexelOrder
 };
 layout(std430, binding = 0) readonly buffer Tree { float sums[]; };
 
 void main() {
   uint index = listIndex();
   if (index >= samples) return;
-  TexelOrder order = TexelOrder(width, rows, together, ways);
+  TexelOrder order = TexelOrder(width, height, rows, together, ways);
   float total = sums[0];
   SurfaceLight light = SurfaceLight(vec4(0.0), vec4(0.0), vec4(0.0));
   if (total > 0.0) {

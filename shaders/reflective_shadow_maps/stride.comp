@@ -5,9 +5,9 @@ layout(local_size_x = 64) in;
 #include "taken.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  int width;   // texels along a side of a layer
+  int width, height;  // texels of a layer
   int stride;
-  int across;  // squares along a side of a layer
+  int across, down;  // squares of a layer
   int count;   // of all layers
   int area;    // of lights: taken.glsl
 };
@@ -15,8 +15,8 @@ layout(std140, binding = 0) uniform Parameters {
 void main() {
   uint index = listIndex();
   if (index >= uint(count)) return;
-  ivec3 square = ivec3(int(index) % across, int(index) / across % across, int(index) / across / across);
+  ivec3 square = ivec3(int(index) % across, int(index) / across % down, int(index) / across / down);
   // At the borders a square may be cut off.
-  ivec2 first = square.xy * stride, size = min(ivec2(stride), width - first);
+  ivec2 first = square.xy * stride, size = min(ivec2(stride), ivec2(width, height) - first);
   taken[index] = texelLight(ivec3(first + size / 2, square.z), float(size.x * size.y), area);
 }

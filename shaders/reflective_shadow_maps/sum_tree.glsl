@@ -13,21 +13,21 @@ uint levelSize(uint texels, uint level) {
   return size;
 }
 
-// In which order the texels of a map are numbered. Layers are square and cut into strips, which are passed column by column; at each place
+// In which order the texels of a map are numbered. Layers are cut into strips, which are passed column by column; at each place
 // the layers of `together` views are passed, which look the same way. Rows one high of layers on their own are the order of the texture.
 struct TexelOrder {
-  uint width;     // texels along a side of a layer
+  uint width, height;  // texels of a layer
   uint rows;      // of a strip
   uint together;
   uint ways;      // layers / together
 };
 
-uint rowsAt(uint row, TexelOrder order) { return min(order.rows, order.width - row / order.rows * order.rows); }
+uint rowsAt(uint row, TexelOrder order) { return min(order.rows, order.height - row / order.rows * order.rows); }
 
 ivec3 texelOf(uint index, TexelOrder order) {
-  uint place = index / order.together, inLayer = place % (order.width * order.width);
+  uint place = index / order.together, inLayer = place % (order.width * order.height);
   uint row = inLayer / (order.width * order.rows) * order.rows, rows = rowsAt(row, order), inStrip = inLayer % (order.width * order.rows);
-  uint way = place / (order.width * order.width);
+  uint way = place / (order.width * order.height);
   return ivec3(inStrip / rows, row + inStrip % rows, index % order.together * order.ways + way);
 }
 
@@ -42,7 +42,7 @@ void advance(inout ivec3 texel, TexelOrder order) {
   if (++texel.x < int(order.width)) return;
   texel.x = 0;
   texel.y += rows;
-  if (texel.y < int(order.width)) return;
+  if (texel.y < int(order.height)) return;
   texel.y = 0;
   ++texel.z;
 }

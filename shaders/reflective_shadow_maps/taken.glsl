@@ -21,7 +21,7 @@ SurfaceLight texelLight(ivec3 texel, float copies, int kindOfArea) {
   float area = normalArea.w;
   if (kindOfArea == kAreaShared) area *= partOfLight(lights[int(flux.w)]);
   if (kindOfArea == kAreaFacing && area > 0.0)
-    area = crossSectionOf(lights[int(flux.w)], posWorld, vec2(texel.xy) + 0.5 - 0.5 * float(textureSize(rsmFlux, 0).x));
+    area = crossSectionOf(lights[int(flux.w)], posWorld, vec2(texel.xy) + 0.5 - 0.5 * vec2(textureSize(rsmFlux, 0).xy));
   return SurfaceLight(vec4(posWorld, area * copies), vec4(normalArea.xyz, 0.0), vec4(flux.rgb * copies, 0.0));
 }
 

@@ -1,6 +1,7 @@
 #version 450
 // Sec. 3.3: how much of the sphere that stands for the averaged light is hidden from each point by the discs of all others.
 #pragma lumivox axis COMBINE product sum nearest mask
+#pragma lumivox axis DISCS points surfaces  // of all points, or of other surfaces
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "surface_points.glsl"
@@ -14,6 +15,9 @@ layout(std140, binding = 0) uniform Parameters {
 };
 layout(binding = 0) uniform sampler2D lights;
 layout(binding = 1) uniform sampler2D places;
+#if DISCS == DISCS_SURFACES
+layout(std430, binding = 1) readonly buffer Surfaces { SurfaceLight surfaces[]; };
+#endif
 layout(std430, binding = 0) buffer States { uvec2 states[]; };  // between dispatches
 layout(binding = 0, rgba32f) uniform writeonly image2D occludedImage;
 
@@ -22,6 +26,19 @@ layout(binding = 0, rgba32f) uniform writeonly image2D occludedImage;
 #define State uvec2
 #else
 #define State vec2
+#endif
+
+#if DISCS == DISCS_SURFACES
+vec3 discPosition(int i) { return surfaces[i].positionArea.xyz; }
+vec3 discNormal(int i) { return surfaces[i].normal.xyz; }
+float discArea(int i) { return surfaces[i].positionArea.w; }
+#else
+vec3 discPosition(int i) { return texelFetch(pointPosition, pointTexel(uint(i)), 0).xyz; }
+vec3 discNormal(int i) { return texelFetch(pointNormal, pointTexel(uint(i)), 0).xyz; }
+float discArea(int i) {
+  float radius = texelFetch(pointRadius, pointTexel(uint(i)), 0).x;
+  return kPi * radius * radius;
+}
 #endif
 
 void main() {
@@ -49,8 +66,7 @@ void main() {
     vec3 tangent = normalize(cross(helper, normal)), binormal = cross(normal, tangent);
     Square sphere = squareOf(toLight, formFactor, tangent, binormal);
     for (int i = firstOccluder; i < firstOccluder + occluders; ++i) {
-      ivec2 other = pointTexel(uint(i));
-      vec3 toDisc = texelFetch(pointPosition, other, 0).xyz - position;
+      vec3 toDisc = discPosition(i) - position;
       float discDistanceSquared = dot(toDisc, toDisc);
       float above = dot(toDisc, normal);
       // Most are below the surface, or behind the light's middle.
@@ -58,10 +74,9 @@ void main() {
       float discDistance = sqrt(discDistanceSquared);
       vec3 direction = toDisc / discDistance;
       // The side that is seen counts: the other side of an open surface is a point of its own, and a body would hide twice.
-      float cosAtDisc = -dot(direction, texelFetch(pointNormal, other, 0).xyz);
+      float cosAtDisc = -dot(direction, discNormal(i));
       if (!(cosAtDisc > 0.0)) continue;
-      float discRadius = texelFetch(pointRadius, other, 0).x;
-      Square disc = squareOf(direction, discWidth(kPi * discRadius * discRadius, cosAtDisc, discDistanceSquared) * above / discDistance,
+      Square disc = squareOf(direction, discWidth(discArea(i), cosAtDisc, discDistanceSquared) * above / discDistance,
                              tangent, binormal);
       // From the near side of the sphere to its middle less and less.
       float before = radius > 0.0 ? min(1.0, (distance - discDistance) / radius) : 1.0;

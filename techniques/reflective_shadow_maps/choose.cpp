@@ -75,6 +75,7 @@ class ChoosePass : public Pass {
 
   /// Each sample of a light is a light of its own, unless they share their areas.
   int overlapping(PassContext& frame) const {
+    if (map->overlapping > 0) return map->overlapping;
     if (areaOf() != Area::shared) return map->lightCount;
     const Scene& scene = frame.sceneDescription();
     auto lightsOfScene = static_cast<int>(scene.lights.size());
@@ -96,7 +97,8 @@ class ChoosePass : public Pass {
   /// By a tree of sums (sum_tree.glsl).
   SurfaceLights byFlux(PassContext& frame) const {
     const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
-    const auto side = static_cast<std::uint32_t>(map->flux->description().width);
+    const gpu::TextureDescription& flux = map->flux->description();
+    const auto width = static_cast<std::uint32_t>(flux.width), height = static_cast<std::uint32_t>(flux.height);
     // TexelOrder in sum_tree.glsl. Where all lights have six views, those of one direction go together.
     constexpr int kCubeViews = 6;
     const bool inPatches = order == Order::patches;
@@ -123,7 +125,7 @@ class ChoosePass : public Pass {
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
       frame.dispatchList(frame.program(variant),
                          {accumulate::parameters(
-                              {sizes[level - 1], firstOfAddends, firstOfSums, side, rows, together, ways}),
+                              {sizes[level - 1], firstOfAddends, firstOfSums, width, height, rows, together, ways}),
                           texels, accumulate::tree(tree)},
                          sizes[level]);
       firstOfAddends = firstOfSums;
@@ -131,7 +133,7 @@ class ChoosePass : public Pass {
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
     frame.dispatchList(
         frame.program(choose::kProgram),
-        {choose::parameters({sizes.front(), levels, count, areaCode(), side, rows, together, ways}), texels,
+        {choose::parameters({sizes.front(), levels, count, areaCode(), width, height, rows, together, ways}), texels,
          choose::tree(tree), choose::taken(result.lights)},
         count);
     return result;
@@ -139,10 +141,11 @@ class ChoosePass : public Pass {
 
   SurfaceLights byStride(PassContext& frame) const {
     const gpu::TextureDescription& flux = map->flux->description();
-    const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
+    const int across = (flux.width + stride - 1) / stride, down = (flux.height + stride - 1) / stride,
+              count = across * down * flux.depth;
     const SurfaceLights result{room(frame, count), count, overlapping(frame)};
     frame.dispatchList(frame.program(stride::kProgram),
-                       {stride::parameters({flux.width, stride, across, count, areaCode()}),
+                       {stride::parameters({flux.width, flux.height, stride, across, down, count, areaCode()}),
                         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
                        static_cast<std::uint64_t>(count));
     return result;

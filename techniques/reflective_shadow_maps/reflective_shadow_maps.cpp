@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_views.h"
@@ -129,9 +130,12 @@ class GatherPass : public Pass {
     if (method == Method::lights)
       return addAll(lights->count, 0, Variant::methodLights, {gather::taken(lights->lights)});
     parameters.width = map->flux->description().width;
+    if (method == Method::projected && map->views == nullptr)
+      throw Error(
+          "'method projected' of a map without views of lights, such as a captured one; expected lights or all");
     const ReflectiveShadowMapBinding texels(*map);
     if (method == Method::all)
-      return addAll(parameters.width * map->layerCount, parameters.width, Variant::methodAll, texels);
+      return addAll(map->flux->description().height * map->layerCount, parameters.width, Variant::methodAll, texels);
     parameters.lightCount = map->lightCount;
     parameters.samples = std::max(samples / map->lightCount, 1);
     parameters.reach = reach;

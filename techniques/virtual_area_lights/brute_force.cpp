@@ -13,6 +13,8 @@ using namespace shaders::virtual_area_lights;
 class BruteForcePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
+  In<SurfaceLights> moreLights{this, "more_lights", Presence::optional,
+                               "more virtual area lights, from another pass"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -27,18 +29,20 @@ class BruteForcePass : public Pass {
 
   Image sum(PassContext& frame, int lobe, bool reflects) const {
     Image result{frame.image("light of all lights")};
-    if (!reflects || !lights || lights->count == 0) {
-      result.texture->clear(glm::vec4(0, 0, 0, 1));
-      return result;
-    }
     const shader::BoundProgram& program = frame.program(brute_force::Variant{lobe});
-    forEachPortion(lights->count, 1, [&](int first, int count) {
-      frame.dispatch(program,
-                     {brute_force::parameters({frame.snapshot().camera.eye, first, count, first == 0}),
-                      GBufferBinding(*gbuffer), brute_force::surfaceLights(lights->lights),
-                      brute_force::reflectedImage(result.texture)},
-                     pixels(frame));
-    });
+    bool begins = true;
+    for (const In<SurfaceLights>* some : {&lights, &moreLights}) {
+      if (!reflects || !*some) continue;
+      forEachPortion((*some)->count, 1, [&](int first, int count) {
+        frame.dispatch(program,
+                       {brute_force::parameters({frame.snapshot().camera.eye, first, count, begins}),
+                        GBufferBinding(*gbuffer), brute_force::surfaceLights((*some)->lights),
+                        brute_force::reflectedImage(result.texture)},
+                       pixels(frame));
+        begins = false;
+      });
+    }
+    if (begins) result.texture->clear(glm::vec4(0, 0, 0, 1));
     return result;
   }
 };

@@ -15,6 +15,8 @@ class OccludePass : public Pass {
 
   In<SurfacePoints> points{this, "points", "where light was gathered, and the discs that occlude it"};
   In<SparseLight> unoccluded{this, "light", "averaged light, from normalise"};
+  In<SurfaceLights> occluders{this, "occluders", Presence::optional,
+                              "discs of other surfaces that occlude too, such as captured ones"};
   Param<bool> occlusion{this, "occlusion", true, "off: the light passes unchanged"};
   Param<Combine> combine{
       this, "combine", Combine::mask,
@@ -24,12 +26,18 @@ class OccludePass : public Pass {
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                          "averaged light without the part that discs occlude"};
 
-  bool uses(const InBase& input) const override { return occlusion || &input != &points; }
+  struct OccludedKey {
+    gpu::TextureRef light;
+    gpu::BufferRef occluders;
+    bool operator==(const OccludedKey&) const = default;
+  };
+
+  bool uses(const InBase& input) const override { return occlusion || (&input != &points && &input != &occluders); }
 
   void run(PassContext& frame) override {
     SparseLight result = *unoccluded;
     if (occlusion) {
-      result.diffuse = frame.kept("occluded diffuse light", result.diffuse, [&] {
+      result.diffuse = frame.kept("occluded diffuse light", OccludedKey{result.diffuse, occluders ? occluders->lights : nullptr}, [&] {
         return occlude(frame, unoccluded->diffuse, unoccluded->diffusePosition);
       });
       if (result.glossy) result.glossy = occlude(frame, unoccluded->glossy, unoccluded->glossyPosition);
@@ -42,17 +50,23 @@ class OccludePass : public Pass {
     gpu::TextureRef result = sparseTexture(frame, *points, "occluded light");
     const gpu::BufferRef states =
         frame.elements(occlude::states, static_cast<std::uint64_t>(points->count), "occlusion so far");
-    const shader::BoundProgram& program =
-        frame.program(occlude::Variant{.combine = static_cast<int>(static_cast<Combine>(combine))});
-    forEachPortion(points->count, 0, [&](int first, int count) {
-      forEachPoint(
-          frame, program,
-          {occlude::parameters({first, count, first == 0, first + count == points->count, asPublished}),
-           SurfacePointsBinding(*points), occlude::lights(lights, gpu::Sampling::nearest),
-           occlude::places(places, gpu::Sampling::nearest), occlude::states(states),
-           occlude::occludedImage(result)},
-          *points);
-    });
+    const int others = occluders ? occluders->count : 0;
+    const auto add = [&](int discs, int total, bool begins, bool ends, const shader::BindingSet& from) {
+      const shader::BoundProgram& program = frame.program(
+          occlude::Variant{.combine = static_cast<int>(static_cast<Combine>(combine)), .discs = discs});
+      forEachPortion(total, 0, [&](int first, int count) {
+        forEachPoint(frame, program,
+                     {occlude::parameters({first, count, begins && first == 0, ends && first + count == total,
+                                           asPublished}),
+                      SurfacePointsBinding(*points), from, occlude::lights(lights, gpu::Sampling::nearest),
+                      occlude::places(places, gpu::Sampling::nearest), occlude::states(states),
+                      occlude::occludedImage(result)},
+                     *points);
+      });
+    };
+    add(occlude::Variant::discsPoints, points->count, true, others == 0, {});
+    if (others > 0)
+      add(occlude::Variant::discsSurfaces, others, points->count == 0, true, {occlude::surfaces(occluders->lights)});
     return result;
   }
 };

@@ -60,7 +60,7 @@ std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const Pi
     const auto any = [read = read](Reads set) { return (read & set) != Reads::nothing; };
     runs[pass] =
         any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
-        : any(Reads::geometry | Reads::lights | Reads::media | Reads::time)     ? RunsWhen::somethingMoves
+        : any(Reads::geometry | Reads::lights | Reads::media | Reads::capture | Reads::time)     ? RunsWhen::somethingMoves
                                                                                 : RunsWhen::once;
   }
   return runs;

@@ -324,6 +324,19 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
   return content;
 }
 
+std::string readFilePart(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+  struct stat status {};
+  const Descriptor file = openRegular(path, status);
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (offset > size || bytes > size - offset)
+    throw Error(fmt::format("{}: ends at byte {}; expected {} bytes from byte {} on", path.string(), size, bytes, offset));
+  requireMemory(bytes, path.string());
+  if (lseek(file.get(), static_cast<off_t>(offset), SEEK_SET) < 0) fail(path, "read");
+  std::string content = readSome(file, bytes, bytes, path);
+  if (content.size() != bytes) throw Error(fmt::format("{}: cannot read: it became shorter", path.string()));
+  return content;
+}
+
 std::string readFileStart(const std::filesystem::path& path, std::uint64_t limitBytes) {
   struct stat status {};
   const Descriptor file = openRegular(path, status);

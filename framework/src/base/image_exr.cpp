@@ -294,6 +294,9 @@ std::span<const std::string_view> componentsFor(int channels) {
   }
 }
 
+/// The channel of depths along the view axis, and the name of its layer.
+constexpr const char* kDepth = "Z";
+
 /// Holds the names of layers of several channels that are no radiance, with commas between them.
 constexpr const char* kNotRadiance = "lumivox.not_radiance";
 
@@ -399,6 +402,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image) {
     header.zipCompressionLevel() = 1;
     Imf::FrameBuffer frame;
     for (const auto& [name, layer] : image.layers) {
+      const bool isDepth = name == kDepth && layer.channels() == 1;
       const auto components = componentsFor(layer.channels());
       if (layer.width() != first.width() || layer.height() != first.height() || components.empty()) {
         throw Error(fmt::format("layer '{}' is {} x {} pixels with {} channels; expected {} x {} with 1 to 4",
@@ -407,7 +411,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image) {
       }
       const std::size_t pixelStride = sizeof(float) * components.size();
       for (std::size_t c = 0; c < components.size(); ++c) {
-        const std::string full = channelName(name, components[c]);
+        const std::string full = isDepth ? name : channelName(name, components[c]);
         header.channels().insert(full, Imf::Channel(Imf::FLOAT));
         frame.insert(full,
                      Imf::Slice::Make(Imf::FLOAT, layer.values().data() + c, header.dataWindow(), pixelStride,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -74,10 +75,11 @@ unsigned char paeth(int left, int above, int upperLeft) {
   return static_cast<unsigned char>(toLeft <= toAbove && toLeft <= toUpperLeft ? left : nearerOfTwo);
 }
 
+/// `pixelBytes`: the distance of a byte to that of the pixel before it.
 void filterRow(unsigned char filter, const unsigned char* row, const unsigned char* above, std::size_t size,
-               unsigned char* result) {
-  const auto leftOf = [](const unsigned char* bytes, std::size_t i) {
-    return i < kChannels ? 0 : bytes[i - kChannels];
+               std::size_t pixelBytes, unsigned char* result) {
+  const auto leftOf = [pixelBytes](const unsigned char* bytes, std::size_t i) {
+    return i < pixelBytes ? 0 : bytes[i - pixelBytes];
   };
   switch (filter) {
     case 0:
@@ -90,16 +92,16 @@ void filterRow(unsigned char filter, const unsigned char* row, const unsigned ch
       for (std::size_t i = 0; i < size; ++i) result[i] = static_cast<unsigned char>(row[i] - above[i]);
       return;
     default:
-      for (std::size_t i = 0; i < std::min(size, kChannels); ++i)
+      for (std::size_t i = 0; i < std::min(size, pixelBytes); ++i)
         result[i] = static_cast<unsigned char>(row[i] - above[i]);
-      for (std::size_t i = kChannels; i < size; ++i)
+      for (std::size_t i = pixelBytes; i < size; ++i)
         result[i] =
-            static_cast<unsigned char>(row[i] - paeth(row[i - kChannels], above[i], above[i - kChannels]));
+            static_cast<unsigned char>(row[i] - paeth(row[i - pixelBytes], above[i], above[i - pixelBytes]));
   }
 }
 
 /// Each row behind the number of the filter that leaves the least sum of differences (Sec. 12.8).
-std::string filtered(const std::vector<unsigned char>& bytes, std::size_t rowBytes) {
+std::string filtered(const std::vector<unsigned char>& bytes, std::size_t rowBytes, std::size_t pixelBytes) {
   const std::size_t rows = bytes.size() / rowBytes;
   std::string result(rows * (rowBytes + 1), '\0');
   std::vector<unsigned char> above(rowBytes, 0), candidate(rowBytes), best(rowBytes);
@@ -109,7 +111,7 @@ std::string filtered(const std::vector<unsigned char>& bytes, std::size_t rowByt
     const unsigned char* previous = y == 0 ? above.data() : row - rowBytes;
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     for (const unsigned char filter : kFilters) {
-      filterRow(filter, row, previous, rowBytes, candidate.data());
+      filterRow(filter, row, previous, rowBytes, pixelBytes, candidate.data());
       std::uint64_t sum = 0;
       for (const unsigned char byte : candidate) sum += std::min<unsigned>(byte, 256u - byte);
       if (sum >= least) continue;
@@ -139,6 +141,36 @@ void appendChunk(std::string& png, const char* type, const std::string& data) {
   appendBigEndian(png, libdeflate_crc32(0, png.data() + begin, png.size() - begin));
 }
 
+struct Layout {
+  int width = 0, height = 0;
+  char bitDepth = 8, colourType = 2;  ///< Sec. 11.2.2
+  std::size_t pixelBytes = 3;
+};
+
+std::string encoded(const std::vector<unsigned char>& bytes, const Layout& layout,
+                    const std::map<std::string, std::string>& attributes) {
+  const std::size_t rowBytes = static_cast<std::size_t>(layout.width) * layout.pixelBytes;
+  requireMemory(4 * bytes.size(), "encoding a PNG");
+  const std::string data = zlibStream(filtered(bytes, rowBytes, layout.pixelBytes), kDeflateLevel);
+  constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
+  if (data.size() > kLongestChunk) {
+    throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded: it has over 2 GiB", layout.width,
+                            layout.height));
+  }
+  std::string png = "\x89PNG\r\n\x1a\n", header;
+  appendBigEndian(header, static_cast<std::uint32_t>(layout.width));
+  appendBigEndian(header, static_cast<std::uint32_t>(layout.height));
+  constexpr char kDeflate = 0, kAdaptiveFilters = 0, kNotInterlaced = 0;
+  for (const char byte : {layout.bitDepth, layout.colourType, kDeflate, kAdaptiveFilters, kNotInterlaced})
+    header += byte;
+  appendChunk(png, "IHDR", header);
+  // Sec. 11.3.3.2: keyword, a byte of 0, text
+  for (const auto& [keyword, text] : attributes) appendChunk(png, "tEXt", keyword + '\0' + text);
+  appendChunk(png, "IDAT", data);
+  appendChunk(png, "IEND", {});
+  return png;
+}
+
 }  // namespace
 
 std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display& display) {
@@ -165,25 +197,9 @@ std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display
 
 std::string encodePng(const ImageBuffer& linear, const Display& display,
                       const std::map<std::string, std::string>& attributes) {
-  const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
-  requireMemory(4 * linear.pixelCount() * kChannels, "encoding a PNG");
-  const std::string data = zlibStream(filtered(displayBytes(linear, display), rowBytes), kDeflateLevel);
-  constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
-  if (data.size() > kLongestChunk) {
-    throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded: it has over 2 GiB", linear.width(),
-                            linear.height()));
-  }
-  std::string png = "\x89PNG\r\n\x1a\n", header;
-  appendBigEndian(header, static_cast<std::uint32_t>(linear.width()));
-  appendBigEndian(header, static_cast<std::uint32_t>(linear.height()));
-  constexpr char kBitDepth = 8, kTrueColour = 2, kDeflate = 0, kAdaptiveFilters = 0, kNotInterlaced = 0;
-  for (const char byte : {kBitDepth, kTrueColour, kDeflate, kAdaptiveFilters, kNotInterlaced}) header += byte;
-  appendChunk(png, "IHDR", header);
-  // Sec. 11.3.3.2: keyword, a byte of 0, text
-  for (const auto& [keyword, text] : attributes) appendChunk(png, "tEXt", keyword + '\0' + text);
-  appendChunk(png, "IDAT", data);
-  appendChunk(png, "IEND", {});
-  return png;
+  constexpr char kBitDepth = 8, kTrueColour = 2;
+  return encoded(displayBytes(linear, display), {linear.width(), linear.height(), kBitDepth, kTrueColour, kChannels},
+                 attributes);
 }
 
 void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display,
@@ -195,6 +211,24 @@ void writePng(const std::filesystem::path& path, const ImageBuffer& linear, cons
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   }
   writeFileAtomically(path, bytes);
+}
+
+void writeGreyPng16(const std::filesystem::path& path, const WordImage& image) {
+  assert(image.values.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  constexpr char kBitDepth = 16, kGrey = 0;
+  std::vector<unsigned char> bytes;  // the high byte first, Sec. 7.1
+  bytes.reserve(2 * image.values.size());
+  for (const std::uint16_t value : image.values) {
+    bytes.push_back(static_cast<unsigned char>(value >> 8));
+    bytes.push_back(static_cast<unsigned char>(value & 0xffu));
+  }
+  writeFileAtomically(path, encoded(bytes, {image.width, image.height, kBitDepth, kGrey, 2}, {}));
+}
+
+void writeBytePng(const std::filesystem::path& path, const ByteImage& image) {
+  assert(image.channels == static_cast<int>(kChannels));
+  constexpr char kBitDepth = 8, kTrueColour = 2;
+  writeFileAtomically(path, encoded(image.values, {image.width, image.height, kBitDepth, kTrueColour, kChannels}, {}));
 }
 
 }  // namespace lumivox

@@ -114,10 +114,14 @@ void checkTga(Bytes bytes) {
   if (at > bytes.size()) refuse("the TGA is truncated");
 }
 
-ByteImage decode(Bytes bytes) {
+void requireSmallFile(Bytes bytes) {
   if (bytes.empty()) refuse("the file is empty; expected a PNG, JPG or TGA");
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     refuse("the image file is over 2 GiB");
+}
+
+ByteImage decode(Bytes bytes) {
+  requireSmallFile(bytes);
   const int size = static_cast<int>(bytes.size());
   ByteImage image;
   if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &image.channels) == 0) {
@@ -150,6 +154,32 @@ std::map<std::string, std::string> readPngAttributes(const std::filesystem::path
   try {
     if (file.substr(0, kSignature.size()) != kSignature) refuse("is not a PNG");
     return checkPng({reinterpret_cast<const unsigned char*>(file.data()), file.size()});
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+WordImage decodeGreyPng16(const std::string& file, const std::filesystem::path& path) {
+  const Bytes bytes(reinterpret_cast<const unsigned char*>(file.data()), file.size());
+  try {
+    requireSmallFile(bytes);
+    const int size = static_cast<int>(bytes.size());
+    WordImage image;
+    int channels = 0;
+    if (bytes[0] != 0x89 || stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &channels) == 0)
+      refuse("is not a readable PNG; expected a grey PNG of 16 bits");
+    checkPng(bytes);
+    const bool has16Bits = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
+    if (!has16Bits || channels != 1)
+      refuse(fmt::format("has {} bits and {} channel{}; expected a grey PNG of 16 bits", has16Bits ? 16 : 8, channels,
+                         channels == 1 ? "" : "s"));
+    const std::uint64_t count = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    requireMemory(count * 6, fmt::format("an image of {} x {} pixels", image.width, image.height));
+    const std::unique_ptr<stbi_us, decltype(&std::free)> pixels(
+        stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &channels, 0), &std::free);
+    if (!pixels) refuse(fmt::format("is not a readable PNG: {}", stbi_failure_reason()));
+    image.values.assign(pixels.get(), pixels.get() + count);
+    return image;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   }

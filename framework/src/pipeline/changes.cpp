@@ -39,6 +39,7 @@ Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSn
   if (otherOrigin || before.lights != after.lights) changed = changed | Reads::lights;
   if (otherOrigin || !sameButForLens(before.camera, after.camera)) changed = changed | Reads::camera;
   if (!sameLens(before.camera, after.camera)) changed = changed | Reads::lens;
+  if (otherOrigin || before.captures != after.captures) changed = changed | Reads::capture;
   if (before.time != after.time) changed = changed | Reads::time;
   return changed;
 }
@@ -59,6 +60,12 @@ Reads whatChanged(const Scene& before, const Scene& after) {
   if ((geometry || materials) && (emits(before) || emits(after))) changed = changed | Reads::lights;
   if (before.environment != after.environment) changed = changed | Reads::environment;
   if (before.media != after.media) changed = changed | Reads::media;
+  const auto same = [](const std::shared_ptr<const Capture>& a, const std::shared_ptr<const Capture>& b) {
+    return a->hash == b->hash;
+  };
+  if (!std::equal(before.captures.begin(), before.captures.end(), after.captures.begin(), after.captures.end(),
+                  same))
+    changed = changed | Reads::capture;
   return changed;
 }
 

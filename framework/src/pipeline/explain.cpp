@@ -172,6 +172,14 @@ std::string mediaText(const Seen& seen) {
                        : fmt::format("{} {}", names.size() == 1 ? "medium" : "media", fmt::join(names, ", "));
 }
 
+std::string capturesText(const Seen& seen) {
+  std::vector<std::string> names;
+  for (const auto& capture : seen.scene.captures) names.push_back(fmt::format("'{}'", capture->name));
+  return names.empty() ? ""
+                       : fmt::format("the frames of {} {}", names.size() == 1 ? "capture" : "captures",
+                                     fmt::join(names, ", "));
+}
+
 constexpr Trait kTraits[] = {{Reads::lens, LeftOut::Level::camera, Trait::In::everyImage, lensText,
                               "no pass sees through a lens: the image is that of a pinhole"},
                              {Reads::geometry, LeftOut::Level::scene, Trait::In::everyImage, trianglesText,
@@ -183,7 +191,9 @@ constexpr Trait kTraits[] = {{Reads::lens, LeftOut::Level::camera, Trait::In::ev
                              {Reads::environment, LeftOut::Level::scene, Trait::In::radiance, environmentText,
                               "no pass reads the environment: the image is that of a black one"},
                              {Reads::media, LeftOut::Level::scene, Trait::In::radiance, mediaText,
-                              "no pass reads media: the image is that of clear air"}};
+                              "no pass reads media: the image is that of clear air"},
+                             {Reads::capture, LeftOut::Level::scene, Trait::In::radiance, capturesText,
+                              "no pass reads captured frames: nothing of the real scene lights the image"}};
 
 }  // namespace
 

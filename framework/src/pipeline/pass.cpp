@@ -43,11 +43,11 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
     bool met;
     const char* words;
   };
-  // An environment counts as a light: it arrives at surfaces like any other, so leaving it out would change
-  // the image.
+  // An environment and captured frames count as lights: they arrive at surfaces like any other, so leaving them out would
+  // change the image.
   const bool anyLight =
       traits.directionalLights + traits.pointLights + traits.spotLights + traits.areaLights > 0 ||
-      traits.emission || traits.environment;
+      traits.emission || traits.environment || traits.captures;
   const Need all[] = {{Needs::anyLight, anyLight, "a light"},
                       {Needs::glossyMaterial, traits.glossy, "a glossy material"},
                       {Needs::environment, traits.environment, "an environment"},
@@ -56,7 +56,8 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
                       {Needs::textures, traits.textures, "a texture"},
                       {Needs::movingGeometry, traits.movingGeometry, "moving geometry"},
                       {Needs::triangles, traits.triangles, "triangles"},
-                      {Needs::particles, traits.particles, "particles"}};
+                      {Needs::particles, traits.particles, "particles"},
+                      {Needs::capturedFrame, traits.captures, "a captured frame"}};
   for (const Need& need : all) {
     const bool asked = (static_cast<std::uint32_t>(needs) & static_cast<std::uint32_t>(need.flag)) != 0;
     if (asked && !need.met) return need.words;

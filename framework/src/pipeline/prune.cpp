@@ -149,11 +149,13 @@ Reads whatMayChange(const PruneRequest& request) {
   const Reads camera = Reads::camera | Reads::partOfCamera;
   const Reads histories = request.accumulate ? Reads::history : Reads::nothing;
   if (request.interactive)
-    return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | histories;
+    return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | Reads::capture |
+           histories;
   Reads result = Reads::time | histories;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
   if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
   if (request.traits.movingCamera) result = result | camera;
+  if (request.traits.movingCaptures) result = result | Reads::capture;
   return result;
 }
 
@@ -237,6 +239,7 @@ std::string readsText(Reads set) {
   if (reads(set, Reads::partOfCamera)) words.push_back("part of the camera");
   if (reads(set, Reads::environment)) words.push_back("environment");
   if (reads(set, Reads::media)) words.push_back("media");
+  if (reads(set, Reads::capture)) words.push_back("captured frames");
   if (reads(set, Reads::time)) words.push_back("time");
   if (reads(set, Reads::history)) words.push_back("earlier frames");
   return words.empty() ? "nothing of the scene" : fmt::format("{}", fmt::join(words, ", "));

@@ -66,6 +66,15 @@ std::optional<fs::path> AssetSearch::find(const std::string& name) const {
   return std::nullopt;
 }
 
+std::optional<fs::path> AssetSearch::findAny(const std::string& name) const {
+  for (const fs::path& directory : directories_) {
+    const fs::path candidate = (directory / name).lexically_normal();
+    std::error_code error;
+    if (fs::exists(candidate, error)) return candidate;
+  }
+  return std::nullopt;
+}
+
 std::string AssetSearch::soughtAt(const std::string& name) const {
   std::string text;
   for (const fs::path& directory : directories_) {

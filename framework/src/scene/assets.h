@@ -18,6 +18,8 @@ class AssetSearch {
   AssetSearch(const std::filesystem::path& sceneFile, const SceneLoadOptions& options);
 
   std::optional<std::filesystem::path> find(const std::string& name) const;
+  /// As find(), for folders too.
+  std::optional<std::filesystem::path> findAny(const std::string& name) const;
   /// Every place where `name` was sought, for messages.
   std::string soughtAt(const std::string& name) const;
   /// Whether `name` is meant to be beside the text, so that its absence is an error of the text: its folder

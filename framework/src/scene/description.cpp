@@ -115,14 +115,16 @@ class Reader {
         const std::string& name = item.property->values.front().text;
         if (item.property->word == "material") materialNames_.add(name);
         if (item.property->word == "mesh") meshNames_.add(name);
+        if (item.property->word == "capture") captureNames_.add(name);
       }
       if (!item.block) continue;
       // A misspelt block is a finding of its own: its name is known all the same.
       std::string word = item.block->word;
-      if (!known(grammar_, *item.block)) word = suggestionFor(findings_, word, {"material", "mesh"});
-      if (word != "material" && word != "mesh") continue;
+      if (!known(grammar_, *item.block)) word = suggestionFor(findings_, word, {"material", "mesh", "capture"});
+      if (word != "material" && word != "mesh" && word != "capture") continue;
       const std::string name = CheckedBlock(*item.block, specificationOf(grammar_, word)).name();
-      if (!name.empty()) (word == "material" ? materialNames_ : meshNames_).add(name);
+      if (!name.empty())
+        (word == "material" ? materialNames_ : word == "mesh" ? meshNames_ : captureNames_).add(name);
     }
   }
 
@@ -141,6 +143,9 @@ class Reader {
         const CheckedBlock inner(*use, specificationOf(specificationOf(grammar_, "mesh"), "use"));
         if (const auto name = nameIn(inner.find("material"))) checkMaterialName(*name);
       }
+    } else if (block.word == "camera") {
+      if (const auto name = nameIn(outer.find("capture")))
+        requireKnown(captureNames_, "capture", name->text, *name);
     } else if (block.word == "light") {
       if (const auto path = nameIn(outer.find("mesh"))) checkMeshName(*path);
     } else if (block.word == "animate" && !block.header.empty()) {
@@ -158,6 +163,7 @@ class Reader {
     if (block.word == "environment") result_.environment = vector(checkedBlock, "radiance", glm::dvec3(0));
     if (block.word == "medium") readMedium(checkedBlock);
     if (block.word == "animate") readAnimation(checkedBlock);
+    if (block.word == "capture") readCapture(checkedBlock);
   }
 
   /// Of a refused block the files that it names, as far as they are written well: what is wrong with them can
@@ -232,6 +238,10 @@ class Reader {
     const std::vector<double> resolution = block.numbers("resolution", {256, 256});
     camera.width = static_cast<int>(resolution.at(0));
     camera.height = static_cast<int>(resolution.at(1));
+    if (block.has("capture")) {
+      readCapturedView(block, camera);
+      return;
+    }
     readLens(block, camera);
     const BlockSpecification& keyGrammar = specificationOf(specificationOf(grammar_, "camera"), "key");
     for (const Block* keyBlock : block.blocks("key")) {
@@ -258,6 +268,23 @@ class Reader {
       camera.eye = camera.keys.front().eye;
       camera.target = camera.keys.front().target;
     }
+    result_.cameras.push_back(std::move(camera));
+  }
+
+  /// Size 0: that of the capture's frames.
+  void readCapturedView(const CheckedBlock& block, Camera& camera) {
+    for (const char* word : {"eye", "target", "up", "fov", "aperture", "focus"}) {
+      if (const Property* property = block.find(word))
+        report(*property, fmt::format("'{}' of a camera that stands where a capture's stood", word),
+               "capture NAME and resolution alone");
+    }
+    for (const Block* key : block.blocks("key"))
+      report(key->place, 3, "'key' of a camera that stands where a capture's stood",
+             "capture NAME and resolution alone");
+    if (!block.has("resolution")) camera.width = camera.height = 0;
+    const auto& names = captureNames_.inOrder;
+    const auto found = std::find(names.begin(), names.end(), placed(block, "capture")->text);
+    if (found != names.end()) camera.capture = static_cast<int>(found - names.begin());
     result_.cameras.push_back(std::move(camera));
   }
 
@@ -508,11 +535,89 @@ class Reader {
     result_.animations.push_back(std::move(animation));
   }
 
+  void readCapture(const CheckedBlock& block) {
+    CaptureText text;
+    text.name = block.name();
+    text.place = block.block().place;
+    text.folder = placed(block, "folder");
+    text.file = placed(block, "file");
+    text.files = placed(block, "files");
+    const int sources = text.folder.has_value() + text.file.has_value() + text.files.has_value();
+    if (sources != 1) {
+      report(block.block().place, static_cast<int>(block.block().word.size()),
+             sources == 0 ? "the capture names no files" : "the capture names its files twice",
+             "one of folder \"FOLDER\", file \"NAME.sens\" and files \"NAME_####.exr\"");
+    }
+    if (text.file) requireFormat(*text.file, "capture", kSensorFormats);
+    if (text.files) {
+      requireFormat(*text.files, "capture", kFloatImageFormats);
+      if (text.files->text.find('#') == std::string::npos)
+        report(text.files->place, text.files->length, "the file name has no place for the frame number",
+               "a name such as \"room_####.exr\"");
+    }
+    readCaptureFormat(block, text);
+    readCaptureCamera(block, text);
+    text.linear = block.text("transfer", "srgb") == "linear";
+    text.exposure = block.number("exposure", 1.0);
+    if (block.has("range")) {
+      const std::vector<double> range = block.numbers("range", {});
+      text.range.emplace(static_cast<int>(range.at(0)), static_cast<int>(range.at(1)));
+    }
+    text.rate = block.number("rate", text.rate);
+    text.translation = vector(block, "translate", glm::dvec3(0));
+    if (block.has("rotate"))
+      text.rotation =
+          glm::angleAxis(block.numbers("rotate", {}).at(3), direction(block, "rotate", {0, 1, 0}));
+    text.standsFor = placed(block, "stands_for");
+    if (text.standsFor) requireFormat(*text.standsFor, "scene", kSceneFormats);
+    if (sources == 1) result_.captures.push_back(std::move(text));
+  }
+
+  void readCaptureFormat(const CheckedBlock& block, CaptureText& text) {
+    const Property* property = block.find("format");
+    if (property == nullptr) return;
+    text.format = block.text("format", "");
+    const bool isSens = text.format == "sens", isExr = text.format == "exr";
+    if (isSens != text.file.has_value() || isExr != text.files.has_value())
+      report(*property, fmt::format("format '{}' beside '{}'", *text.format,
+                                    text.folder ? "folder" : text.file ? "file" : "files"),
+             isSens ? "file \"NAME.sens\"" : isExr ? "files \"NAME_####.exr\"" : "folder \"FOLDER\"");
+  }
+
+  void readCaptureCamera(const CheckedBlock& block, CaptureText& text) {
+    const auto pair = [&](const char* word) -> std::optional<glm::dvec2> {
+      if (!block.has(word)) return std::nullopt;
+      const std::vector<double> values = block.numbers(word, {});
+      return glm::dvec2(values.at(0), values.at(1));
+    };
+    text.focal = pair("focal");
+    text.centre = pair("centre");
+    constexpr double kShortestFocal = 1e-3;  // pixels
+    if (text.focal && (text.focal->x < kShortestFocal || std::abs(text.focal->y) < kShortestFocal))
+      report(*block.find("focal"), "the focal length is too short, or negative along x",
+             fmt::format("two lengths of at least {} pixels; along y it may be negative", kShortestFocal));
+    if (text.focal.has_value() != text.centre.has_value())
+      report(*block.find(text.focal ? "focal" : "centre"),
+             fmt::format("'{}' alone", text.focal ? "focal" : "centre"), "focal FX FY and centre CX CY");
+    if (block.has("depth_scale")) text.depthScale = block.number("depth_scale", 1.0);
+    const Property* property = block.find("distortion");
+    if (property == nullptr) return;
+    const bool numbers = std::all_of(
+        property->values.begin(), property->values.end(), [](const dsl::Value& value) {
+          return value.kind == dsl::ValueKind::number && !value.unit && std::abs(value.number) <= 1e3;
+        });
+    if (!numbers || property->values.size() != text.distortion.size()) {
+      report(*property, "the distortion is not five numbers", "k1 k2 p1 p2 k3, each from -1000 to 1000");
+      return;
+    }
+    for (std::size_t i = 0; i < text.distortion.size(); ++i) text.distortion[i] = property->values[i].number;
+  }
+
   const dsl::Document& document_;
   std::vector<Diagnostic>& findings_;
   const BlockSpecification& grammar_;
   SceneDescription result_;
-  Names materialNames_, meshNames_;
+  Names materialNames_, meshNames_, captureNames_;
 };
 
 }  // namespace

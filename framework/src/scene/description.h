@@ -2,6 +2,7 @@
 // is reported at its line.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,25 @@ struct MediumText {
   SourcePlace place;
 };
 
+/// Where a capture is and how it is read.
+struct CaptureText {
+  std::string name;
+  SourcePlace place;
+  std::optional<PlacedText> folder, file, files;  ///< exactly one
+  std::optional<std::string> format;
+  std::optional<double> depthScale;
+  std::optional<glm::dvec2> focal, centre;  ///< pixels; a negative focal.y: y runs up
+  std::array<double, 5> distortion{};
+  bool linear = false;
+  double exposure = 1.0;  ///< W/(sr m^2)
+  std::optional<std::pair<int, int>> range;
+  double rate = 30.0;
+  glm::dquat rotation{1, 0, 0, 0};  ///< of the capture's world
+  glm::dvec3 translation{0};
+  std::optional<PlacedText> standsFor;
+  const PlacedText& source() const { return folder ? *folder : file ? *file : *files; }
+};
+
 struct AreaLightText {
   std::string name;
   PlacedText mesh;
@@ -75,6 +95,7 @@ struct SceneDescription {
   glm::vec3 environment{0.0f};
   std::vector<MediumText> media;
   std::vector<AnimationText> animations;
+  std::vector<CaptureText> captures;
 };
 
 /// Checks a parsed text against the grammar and its own references; appends to `findings`. The result is
@@ -86,6 +107,7 @@ SceneDescription describeScene(const dsl::Document& document, std::vector<Diagno
 inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
 inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
 inline const std::vector<std::string> kVolumeFormats{".vdb"};
+inline const std::vector<std::string> kSensorFormats{".sens"}, kFloatImageFormats{".exr"}, kSceneFormats{".scene"};
 bool hasFormat(const std::string& name, const std::vector<std::string>& formats);
 
 /// Whether `name` matches a pattern, in which * stands for any letters and ? for one.

@@ -16,6 +16,7 @@
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"
 #include "scene/assets.h"
+#include "scene/capture_files.h"
 #include "scene/description.h"
 #include "scene/obj_model.h"
 #include "scene/texture.h"
@@ -54,6 +55,11 @@ bool namesOneFile(const MeshText& mesh) {
          hasFormat(mesh.file.text, kModelFormats);
 }
 
+/// The file of poses beside EXR images of a capture.
+std::string posesBeside(const std::string& pattern) {
+  return (fs::path(pattern).parent_path() / "groundtruth.txt").string();
+}
+
 /// A scene is read to be rendered, and the first bad file ends it; or to find all that is wrong.
 enum class Purpose { rendering, checking };
 
@@ -80,6 +86,21 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
   for (const MaterialText& material : description.materials) {
     if (material.texture) require(*material.texture, material.texture->text, "image", kImageFormats);
     if (material.mask) require(*material.mask, material.mask->text, "image", kImageFormats);
+  }
+  for (const CaptureText& capture : description.captures) {
+    if (capture.standsFor) require(*capture.standsFor, capture.standsFor->text, "scene", kSceneFormats);
+    if (capture.file) require(*capture.file, capture.file->text, "capture", kSensorFormats);
+    // A pattern of files stands for the poses beside them.
+    if (capture.folder || capture.files) {
+      const PlacedText& place = capture.source();
+      const std::string name = capture.folder ? place.text : posesBeside(place.text);
+      if (purpose == Purpose::checking ? assets.findAny(name).has_value()
+                                       : !assets.isLocal(name) || assets.findAny(name))
+        continue;
+      findings.push_back(document.finding(
+          place.place, place.length, fmt::format("{} '{}' does not exist", capture.folder ? "capture folder" : "file of poses", name),
+          "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
+    }
   }
   for (const MediumText& medium : description.media) {
     if (medium.file) require(*medium.file, medium.file->text, "volume", kVolumeFormats);
@@ -117,6 +138,8 @@ class Loader {
     }
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
+    for (const CaptureText& capture : description_.captures) attempt(capture.source(), [&] { addCapture(capture); });
+    if (isWhole_) sizeCapturedViews();
     if (isWhole_ && read_.size() == description_.meshes.size()) checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
     throwIfAny(std::move(findings_));
@@ -213,6 +236,32 @@ class Loader {
           readVolumeFile(found(text.file->text, "volume"), text.grid ? text.grid->text : "", hasher_));
     }
     scene_.media.push_back(std::move(medium));
+  }
+
+  void addCapture(const CaptureText& text) {
+    const std::string& name = text.source().text;
+    const auto place = text.files ? assets_.findAny(posesBeside(name)) : assets_.findAny(name);
+    if (!place)
+      throw AbsentError(fmt::format("{}: the files of capture '{}' were not found; searched {}", document_.file.string(),
+                                    text.name, assets_.soughtAt(text.files ? posesBeside(name) : name)));
+    const auto capture =
+        loadCapture(text, text.files ? place->parent_path() / fs::path(name).filename() : *place, hasher_);
+    if (text.standsFor) {
+      SceneLoadOptions real = options_;
+      real.mayHoldCaptures = false;
+      capture->realScene = std::make_shared<const Scene>(
+          loadScene(found(text.standsFor->text, "the scene that capture '" + text.name + "' stands for"), real));
+    }
+    scene_.captures.push_back(capture);
+  }
+
+  /// Views of captures without a resolution have that of the frames.
+  void sizeCapturedViews() {
+    for (Camera& camera : scene_.cameras) {
+      if (camera.capture < 0 || static_cast<std::size_t>(camera.capture) >= scene_.captures.size()) continue;
+      const CaptureCamera& captured = scene_.captures[static_cast<std::size_t>(camera.capture)]->camera;
+      if (camera.width == 0) camera.width = captured.width, camera.height = captured.height;
+    }
   }
 
   /// A medium that fills the scene needs something that has bounds.
@@ -530,6 +579,11 @@ Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& option
   const AssetSearch assets(document.file, options);
   std::vector<Diagnostic> findings = document.findings;
   const SceneDescription description = describeScene(document, findings);
+  if (!options.mayHoldCaptures) {
+    for (const CaptureText& capture : description.captures)
+      findings.push_back(document.finding(capture.place, 7, "a capture within the scene that a capture stands for",
+                                          "a scene of triangles and lights"));
+  }
   findMissingFiles(document, description, assets, Purpose::rendering, findings);
   dsl::dropConsequences(document, findings);
   throwIfAny(std::move(findings));

@@ -203,6 +203,19 @@ void deform(const VertexSequence& sequence, double time, ObjectState& state) {
   }
 }
 
+/// What the capture's camera sees about its optical axis, with the height of its rows.
+CameraView viewOf(const Capture& capture, const CaptureState& state, int width, int height) {
+  CameraView view;
+  view.eye = state.eye;
+  view.right = state.toWorld[0];
+  view.up = -state.toWorld[1];
+  view.forward = state.toWorld[2];
+  view.tanHalfFov = static_cast<float>(0.5 * capture.camera.height / capture.camera.focal.y);
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
 CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, int width, int height) {
   glm::dvec3 eye = camera.eye, target = camera.target;
   if (!camera.keys.empty()) {
@@ -234,8 +247,8 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
   view.tanHalfFov = static_cast<float>(std::tan(0.5 * camera.fov));
   view.aperture = static_cast<float>(camera.aperture);
   view.focus = static_cast<float>(camera.focus);
-  view.width = width > 0 ? width : camera.width;
-  view.height = height > 0 ? height : camera.height;
+  view.width = width;
+  view.height = height;
   return view;
 }
 
@@ -305,8 +318,14 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   traits.medium = !scene.media.empty();
   traits.particles = std::any_of(scene.media.begin(), scene.media.end(),
                                  [](const Medium& made) { return made.particles > 0; });
-  traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(),
-                                    [](const Camera& camera) { return camera.keys.size() > 1; });
+  const auto moves = [](const std::shared_ptr<const Capture>& capture) { return capture->frames.size() > 1; };
+  traits.captures = !scene.captures.empty();
+  traits.movingCaptures = std::any_of(scene.captures.begin(), scene.captures.end(), moves);
+  traits.movingCamera =
+      std::any_of(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& camera) {
+        return camera.capture >= 0 ? moves(scene.captures.at(static_cast<std::size_t>(camera.capture)))
+                                   : camera.keys.size() > 1;
+      });
   for (const Light& light : scene.lights) {
     if (light.power == glm::vec3(0.0f)) continue;
     traits.directionalLights += light.kind == LightKind::directional ? 1 : 0;
@@ -319,8 +338,8 @@ SceneTraits SceneTraits::of(const Scene& scene) {
 SceneTraits SceneTraits::everything() {
   SceneTraits traits;
   traits.triangles = traits.textures = traits.masks = traits.glossy = traits.emission = traits.environment =
-      traits.medium = traits.particles = true;
-  traits.movingGeometry = traits.movingCamera = true;
+      traits.medium = traits.particles = traits.captures = true;
+  traits.movingGeometry = traits.movingCamera = traits.movingCaptures = true;
   traits.directionalLights = traits.pointLights = traits.spotLights = traits.areaLights = 1;
   return traits;
 }
@@ -356,7 +375,13 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
     kind.grow(placed.high);
   }
   const WideBounds& centred = still.empty() ? all : still;
-  if (!centred.empty()) snapshot.origin = 0.5 * (centred.low + centred.high);
+  if (!centred.empty()) {
+    snapshot.origin = 0.5 * (centred.low + centred.high);
+  } else if (!scene.captures.empty()) {
+    snapshot.origin = scene.captures.front()->frames.front().eye;
+  }
+  for (const auto& capture : scene.captures)
+    snapshot.captures.push_back(captureStateOf(*capture, capture->frameAt(time), snapshot.origin));
 
   WideBounds bounds;
   snapshot.objects.reserve(scene.objects.size());
@@ -383,7 +408,13 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
     snapshot.bounds.grow(glm::vec3(bounds.high - snapshot.origin));
   }
   snapshot.gridBounds = gridBounds(scene, time, snapshot.origin);
-  snapshot.camera = viewOf(camera, time, snapshot.origin, width, height);
+  const int wide = width > 0 ? width : camera.width, high = height > 0 ? height : camera.height;
+  if (camera.capture >= 0) {
+    const auto captured = static_cast<std::size_t>(camera.capture);
+    snapshot.camera = viewOf(*scene.captures.at(captured), snapshot.captures.at(captured), wide, high);
+  } else {
+    snapshot.camera = viewOf(camera, time, snapshot.origin, wide, high);
+  }
   for (const Light& light : scene.lights) {
     snapshot.lights.push_back({light.kind, glm::vec3(light.position - snapshot.origin),
                                glm::vec3(glm::normalize(light.direction)), light.power, light.innerAngle,

@@ -91,12 +91,15 @@ BlockSpecification camera() {
        Row("up", PropertyType::vector3, "the direction that is up in the image")
            .within(kFarthestPlace)
            .byDefault("0 1 0"),
+       Row("capture", PropertyType::name,
+           "a capture: the camera stands where its depth camera stood and sees as high; instead of eye, target, "
+           "up, fov, lens and keys"),
        Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
            .between(0.1 * kDegree, 179.0 * kDegree)
            .byDefault("40 deg"),
        Row("resolution", PropertyType::resolution, "width and height of the image in pixels")
            .between(1, kLargestImage)
-           .byDefault("256 256"),
+           .byDefault("256 256, or the capture's"),
        Row("aperture", PropertyType::number,
            "diameter of the thin lens, which blurs what is not in focus; 0 is a pinhole", dsl::kLength)
            .between(0, kLargestLens)
@@ -259,6 +262,52 @@ BlockSpecification medium() {
            .byDefault("1")});
 }
 
+BlockSpecification capture() {
+  Row format("format", PropertyType::word, "layout of the files; without it, the one whose files are there");
+  format.specification.choices = kCaptureFormats;
+  Row transfer("transfer", PropertyType::word,
+               "transfer function of 8-bit colours; images of floats are linear");
+  transfer.specification.choices = {"srgb", "linear"};
+  return block(
+      "capture", HeaderUse::required,
+      "frames of a depth camera: colour, depth along z and the camera's pose (x right, y down, z forward); their pixels can light the scene",
+      {Row("folder", PropertyType::text,
+           "folder of the capture, beside the scene text or on the asset path; or file, or files"),
+       Row("file", PropertyType::text, "a .sens file"),
+       Row("files", PropertyType::text,
+           "EXR images of linear colour and Z in metres, with #### for the frame number; groundtruth.txt beside them holds the poses"),
+       format.specification,
+       Row("depth_scale", PropertyType::number,
+           "units of the depth images in a metre; by default 5000 for tum, 1000 for frames and redwood; a .sens file has its own")
+           .between(1e-3, 1e9),
+       Row("focal", PropertyType::vector2,
+           "focal lengths in pixels of the depth image; one below 0 along y says that y runs up in the capture's left-handed world, which is then mirrored; required but for redwood (525 525) and .sens")
+           .within(1e6),
+       Row("centre", PropertyType::vector2,
+           "principal point in pixels; the centre of the upper left pixel is 0 0; required as focal (redwood: 319.5 239.5)")
+           .within(1e6),
+       Row("distortion", PropertyType::any,
+           "k1 k2 p1 p2 k3 of OpenCV's model of radial and tangential distortion")
+           .byDefault("0 0 0 0 0"),
+       transfer.byDefault("srgb"),
+       Row("exposure", PropertyType::number, "radiance of a linear colour of 1, W/(sr m^2)")
+           .between(1e-12, 1e12)
+           .byDefault("1"),
+       Row("range", PropertyType::range, "first and last frame, counted from 0 or as the files are numbered")
+           .between(0, 1e9),
+       Row("rate", PropertyType::number, "frames per second of formats without times")
+           .between(1e-3, 1e4)
+           .byDefault("30"),
+       Row("rotate", PropertyType::axisAndNumber,
+           "turn of the capture's world about an axis through its origin; done first", dsl::kAngle)
+           .within(kLargestTurn * kDegree),
+       Row("translate", PropertyType::vector3, "shift of the capture's world; done last", dsl::kLength)
+           .within(kFarthestPlace)
+           .byDefault("0 0 0"),
+       Row("stands_for", PropertyType::text,
+           "scene text of the real scene, which the reference alone reads: the truth needs it")});
+}
+
 std::vector<BlockSpecification> makeSpecifications() {
   BlockSpecification environment = block(
       "environment", HeaderUse::none,
@@ -277,7 +326,7 @@ std::vector<BlockSpecification> makeSpecifications() {
   BlockSpecification scene =
       block("scene", HeaderUse::required,
             "a scene: metres, seconds, Y up, right-handed; all light is linear, in Rec. 709 primaries", {});
-  scene.blocks = {camera(), material(), mesh(), light(), environment, medium(), animate};
+  scene.blocks = {camera(), material(), mesh(), light(), environment, medium(), animate, capture()};
   scene.repeatable = false;
   scene.required = true;
   return {scene};

@@ -197,6 +197,8 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   if (!scene.media.empty()) hasher.add(kMediaVersion);
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
+  for (const auto& capture : scene.captures)
+    if (capture->realScene) hasher.add("stands for").add(capture->realScene->hash.high).add(capture->realScene->hash.low);
   hasher.add(options.samplesPerPixel)
       .add(options.bounces)
       .add(options.roulette)
@@ -221,6 +223,8 @@ std::map<std::string, std::string> provenance(const Scene& scene, const Resolved
       {"resolution", fmt::format("{} {}", options.width, options.height)},
       {"occlusion_distance", fmt::format("{}", options.occlusionDistance)},
       {"tracer_version", std::to_string(kTracerVersion)}};
+  for (const auto& capture : scene.captures)
+    if (capture->realScene) attributes["stands_for"] = capture->realScene->hash.text();
   if (!options.bounceLayers.empty())
     attributes["bounce_layers"] = fmt::format("{}", fmt::join(options.bounceLayers, " "));
   return attributes;

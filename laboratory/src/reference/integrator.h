@@ -31,6 +31,7 @@ struct PathSample {
   glm::vec3 oneBounceDiffuse{0.0f}, oneBounceGlossy{0.0f};
   glm::vec3 indirectDiffuse{0.0f}, indirectGlossy{0.0f};
   float unoccluded = 1.0f;
+  bool real = false;  ///< the first surface is of the scene that a capture stands for
   LateLight lateLight;
 
   glm::vec3 full() const { return direct + indirectDiffuse + indirectGlossy; }
@@ -195,6 +196,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     result.direct = environment;
     return result;
   }
+  result.real = scene.isReal(hit);
   result.direct = scene.emissionTowards(scene.triangles[hit.triangle], direction);
   Surface surface;
   scene.surfaceAt(hit, direction, surface);

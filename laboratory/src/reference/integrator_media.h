@@ -82,6 +82,7 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
 template <class Rays>
 void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit, const glm::vec3& direction,
                                PathSample& result, BounceSums* sums) const {
+  result.real = scene.isReal(hit);
   result.direct = scene.emissionTowards(scene.triangles[hit.triangle], direction);
   Surface surface;
   scene.surfaceAt(hit, direction, surface);

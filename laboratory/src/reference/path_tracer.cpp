@@ -14,6 +14,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "reference/cache.h"
+#include "reference/real_scene.h"
 #include "reference/render.h"
 
 namespace lumivox {
@@ -154,10 +155,13 @@ void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>
 
 }  // namespace reference
 
-LayeredImage renderReference(const Scene& scene, const ReferenceOptions& given) {
+LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& given) {
   using namespace reference;
-  const ResolvedOptions resolved = resolve(scene, given);
+  ResolvedOptions resolved = resolve(virtualScene, given);
   const ReferenceOptions& options = resolved.options;
+  const std::optional<Scene> merged = withRealScenes(virtualScene);
+  const Scene& scene = merged ? *merged : virtualScene;
+  if (merged) resolved.snapshot = snapshotOf(scene, options.time, options.camera, options.width, options.height);
   if (options.samplesPerPixel < 2) {
     throw Error(
         "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");
@@ -181,7 +185,7 @@ LayeredImage renderReference(const Scene& scene, const ReferenceOptions& given) 
   if (stopped()) throw StoppedError(fmt::format("the reference of {} was given up", scene.name));
   const CutOff cutOff = film.cutOff(options.bounces);
   LayeredImage image = film.take();
-  image.attributes = provenance(scene, resolved);
+  image.attributes = provenance(virtualScene, resolved);
   image.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
   if (options.progress) warnOfCutOff(image.attributes);
   return image;

@@ -52,6 +52,8 @@ RayScene::RayScene(const Scene& scene, const SceneSnapshot& snapshot) {
                          textureAt(material.diffuseTexture), textureAt(material.maskTexture),
                          material.glossy(), material.emissive()});
   }
+  for (const Object& object : scene.objects)
+    for (const Part& part : object.parts) materials.at(static_cast<std::size_t>(part.material)).real = object.real;
   collect(scene, snapshot);
   build();
 }

@@ -42,6 +42,7 @@ struct SurfaceMaterial {
   const Texture* diffuseTexture;
   const Texture* maskTexture;
   bool glossy, emissive;
+  bool real = false;  ///< of an object of the scene that a capture stands for
 };
 
 struct Hit {
@@ -111,6 +112,9 @@ class RayScene {
     const bool shines = triangle.emitterDensity > 0.0f && glm::dot(triangle.normal, direction) < 0.0f;
     return shines ? materials[triangle.material].emission : glm::vec3(0.0f);
   }
+
+  /// Whether the hit surface is of the scene that a capture stands for.
+  bool isReal(const Hit& hit) const { return materials[triangles[hit.triangle].material].real; }
 
   /// Whether a mask cuts the surface out at this point of a triangle.
   bool cutOut(std::uint32_t triangle, float u, float v) const;

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lumivox/base/image.h"
@@ -56,12 +57,26 @@ inline constexpr std::array<const char*, 11> kMediaLayers = {"direct",
                                                              "scattered_multiple",
                                                              "scattered"};
 
+/// A real surface is not the virtual scene's: its light is in the layer of all light alone.
 inline std::array<glm::vec3, kSurfaceLayers.size()> radiancesOf(const PathSample& sample) {
+  if (sample.real) {
+    std::array<glm::vec3, kSurfaceLayers.size()> radiances{};
+    radiances.back() = sample.full();
+    return radiances;
+  }
   const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy;
   return {sample.direct,          sample.oneBounceDiffuse, sample.oneBounceGlossy, oneBounce,
           sample.indirectDiffuse, sample.indirectGlossy,   sample.full()};
 }
 inline std::array<glm::vec3, kMediaLayers.size()> radiancesOf(const MediaPathSample& sample) {
+  if (sample.surfaces.real) {
+    MediaPathSample before = sample;
+    before.surfaces = PathSample{};
+    std::array<glm::vec3, kMediaLayers.size()> radiances = radiancesOf(before);
+    static_assert(std::string_view(kMediaLayers[6]) == "full");
+    radiances[6] = sample.full();
+    return radiances;
+  }
   const PathSample& s = sample.surfaces;
   const glm::vec3 oneBounce =
       sample.transmittance * (s.direct + s.oneBounceDiffuse + s.oneBounceGlossy) + sample.scatteredSingle;
@@ -285,9 +300,10 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
         [&](auto& pixel, auto& ofBounces, RandomStream& random, const CameraRay& ray) {
           sums.clear();
           const PathSample sample = integrator.trace(rays, random, ray.origin, ray.direction, asked);
-          pixel.add(radiancesOf(sample), sample.unoccluded);
+          if (sample.real) sums.clear();
+          pixel.add(radiancesOf(sample), sample.real ? 1.0f : sample.unoccluded);
           pixel.addLate(sample.lateLight);
-          if (asked) ofBounces.add(sums, sample.direct, glm::vec3(1.0f));
+          if (asked) ofBounces.add(sums, sample.real ? glm::vec3(0.0f) : sample.direct, glm::vec3(1.0f));
         });
   } else {
     renderPixels<kMediaLayers.size()>(
@@ -296,10 +312,14 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
           sums.clear();
           const MediaPathSample sample =
               integrator.traceThroughMedia(rays, random, ray.origin, ray.direction, asked);
-          pixel.add(radiancesOf(sample), sample.surfaces.unoccluded);
+          const bool real = sample.surfaces.real;
+          if (real) sums.clear();
+          pixel.add(radiancesOf(sample), real ? 1.0f : sample.surfaces.unoccluded);
           pixel.addLate(sample.lateLight);
           if (asked)
-            ofBounces.add(sums, sample.transmittance * sample.surfaces.direct + sample.scatteredSingle,
+            ofBounces.add(sums,
+                          sample.transmittance * (real ? glm::vec3(0.0f) : sample.surfaces.direct) +
+                              sample.scatteredSingle,
                           sample.transmittance);
         });
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cassert>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -54,7 +55,7 @@ class ImageBuffer {
 
 /// Several images of one size under names, and text attributes: what one EXR file holds. The layer "" is
 /// the file's main layer (channels R, G, B without prefix); three channels are named R G B, four R G B A, one
-/// Y, two X Y. Layers that are no radiance although they have several channels are named in an attribute.
+/// Y (a layer "Z" is the channel Z, as depths are named), two X Y. Layers that are no radiance although they have several channels are named in an attribute.
 struct LayeredImage {
   std::map<std::string, ImageBuffer> layers;
   std::map<std::string, std::string> attributes;
@@ -90,6 +91,18 @@ struct ByteImage {
 ByteImage readByteImage(const std::filesystem::path& path);
 /// The same of a file that was read before.
 ByteImage decodeByteImage(const std::string& bytes, const std::filesystem::path& path);
+
+/// A grey image of 16 bits as stored: depths of sensors.
+struct WordImage {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> values;
+};
+/// Decodes a grey PNG of 16 bits. Error names the file, also for one of 8 bits, which holds no depths.
+WordImage decodeGreyPng16(const std::string& bytes, const std::filesystem::path& path);
+/// Writes it, atomically.
+void writeGreyPng16(const std::filesystem::path& path, const WordImage& image);
+/// Writes bytes of three channels as they are, atomically.
+void writeBytePng(const std::filesystem::path& path, const ByteImage& image);
 
 /// The sRGB transfer functions (IEC 61966-2-1), value in [0,1].
 float srgbToLinear(float encoded);

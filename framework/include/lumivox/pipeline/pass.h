@@ -37,7 +37,8 @@ enum class Needs : std::uint32_t {
   textures = 1u << 5,
   movingGeometry = 1u << 6,
   triangles = 1u << 7,
-  particles = 1u << 8
+  particles = 1u << 8,
+  capturedFrame = 1u << 9
 };
 constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -50,7 +51,8 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits);
 /// also the image's size, but not the lens. lens: aperture and focus; passes without it render as through a
 /// pinhole. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index. history:
 /// results of earlier frames, by PassContext::history() and accumulated(); with accumulation
-/// (RenderOptions::accumulate) such a pass runs in every frame.
+/// (RenderOptions::accumulate) such a pass runs in every frame. capture: the frames of captures that belong to
+/// the time; it changes with the frame, not with the clock.
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,
@@ -62,7 +64,8 @@ enum class Reads : std::uint32_t {
   environment = 1u << 6,
   media = 1u << 7,
   history = 1u << 8,
-  lens = 1u << 9
+  lens = 1u << 9,
+  capture = 1u << 10
 };
 constexpr Reads operator|(Reads a, Reads b) {
   return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lumivox/base/hash.h"
+#include "lumivox/scene/capture.h"
 
 namespace lumivox {
 
@@ -84,6 +85,7 @@ struct Object {
   /// World bounds (low, high) of everything that it covers while it turns and deforms, before it travels.
   /// Filled in by the loader like placedBounds.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> sweptBounds;
+  bool real = false;  ///< of the scene that a capture stands for: the reference alone has such objects
   bool animated() const { return motion.has_value() || sequence.has_value(); }
   bool operator==(const Object&) const = default;
 };
@@ -120,6 +122,9 @@ struct Camera {
   double focus =
       0.0;  ///< distance of the plane in focus along the view axis, m; above 0 where there is a lens
   std::vector<CameraKey> keys;
+  /// Index into Scene::captures: the camera stands where that capture's camera stood, and eye, target, up, fov,
+  /// lens and keys do not count. -1 for none.
+  int capture = -1;
 };
 
 /// Densities at the centres of cubic voxels in world space: trilinear between the centres, zero outside.
@@ -168,6 +173,7 @@ struct Scene {
   std::vector<Camera> cameras;  ///< at least one
   glm::vec3 environment{0.0f};  ///< constant radiance over the sphere, W/(sr m^2)
   std::vector<Medium> media;
+  std::vector<std::shared_ptr<const Capture>> captures;
 
   std::size_t triangleCount() const { return indices.size() / 3; }
   const Camera& camera(
@@ -177,8 +183,9 @@ struct Scene {
 /// Features of a scene, and so what a pipeline can leave out. Computed from the content, never declared.
 struct SceneTraits {
   bool triangles = false, textures = false, masks = false, glossy = false, emission = false,
-       environment = false, medium = false, particles = false;
-  bool movingGeometry = false, movingCamera = false;
+       environment = false, medium = false, particles = false, captures = false;
+  bool movingGeometry = false, movingCamera = false,
+       movingCaptures = false;  ///< movingCaptures: one of more than one frame
   int directionalLights = 0, pointLights = 0, spotLights = 0,
       areaLights = 0;  ///< area: objects with emissive parts
 
@@ -235,6 +242,7 @@ struct SceneSnapshot {
   CameraView camera;
   std::vector<LightState> lights;
   std::vector<ObjectState> objects;  ///< parallel to Scene::objects
+  std::vector<CaptureState> captures;  ///< parallel to Scene::captures
   Bounds bounds;                     ///< of all triangles
   /// Bounds for grids around the scene, so that a grid stays where it is while things move: of everything
   /// that the objects cover while they turn and deform; where they travel, grown in steps. A function of the
@@ -262,6 +270,7 @@ struct SceneLoadOptions {
   /// Refuse bad triangles in place of dropping them with a warning; refuse missing material files and unknown
   /// materials in place of a warning and grey 0.8; refuse maps and statements that are not used.
   bool strict = false;
+  bool mayHoldCaptures = true;  ///< false for the scene that a capture stands for
 };
 
 /// Reads a scene text and everything that it names. Of MTL materials Kd, Ks, Ns, Ke, map_Kd, d and map_d are

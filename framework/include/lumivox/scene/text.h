@@ -15,6 +15,9 @@ namespace lumivox {
 /// sides. Squares of differences of such numbers still fit into single precision.
 inline constexpr double kLongestTime = 1e9, kFarthestPlace = 1e9;
 
+/// The formats of captures, as texts name them.
+inline const std::vector<std::string> kCaptureFormats{"tum", "frames", "redwood", "sens", "exr"};
+
 /// One block, `scene NAME { ... }`, with everything that it may contain.
 const std::vector<dsl::BlockSpecification>& sceneSpecifications();
 
