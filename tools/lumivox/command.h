@@ -24,6 +24,7 @@ void addDescribeCommand(Commands& commands);   // describe
 void addListCommand(Commands& commands);       // list
 void addRenderCommand(Commands& commands);     // render
 void addReferenceCommand(Commands& commands);  // reference
+void addCaptureCommand(Commands& commands);    // capture
 void addCacheCommand(Commands& commands);      // cache
 void addCompareCommand(Commands& commands);    // compare
 void addReportCommand(Commands& commands);     // report

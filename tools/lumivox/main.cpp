@@ -40,6 +40,7 @@ int run(int count, char** arguments) {
   addListCommand(commands);
   addRenderCommand(commands);
   addReferenceCommand(commands);
+  addCaptureCommand(commands);
   addCacheCommand(commands);
   addCompareCommand(commands);
   addReportCommand(commands);
