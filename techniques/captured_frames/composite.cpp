@@ -13,10 +13,12 @@ namespace code = shaders::captured_frames;
 class CompositePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible virtual surfaces"};
   In<Image> virtualRadiance{this, "virtual", "image of the virtual content", Contributes::final};
-  In<CapturedFrames> frames{this, "frames", Presence::optional, "the picture behind, by read; without it virtual content alone",
+  In<CapturedFrames> frames{this, "frames", Presence::optional,
+                            "the picture behind, by read; without it virtual content alone",
                             Needs::capturedFrame};
-  Out<Image> radiance{this, "radiance", Contributes::final, Needs::nothing,
-                      "virtual content where it is nearer than the captured depth, else the picture, W/(sr m^2)"};
+  Out<Image> radiance{
+      this, "radiance", Contributes::final, Needs::nothing,
+      "virtual content where it is nearer than the captured depth, else the picture, W/(sr m^2)"};
 
   Reads readsFrom() const override { return Reads::camera; }
 
@@ -54,9 +56,11 @@ class CompositePass : public Pass {
   /// Only from the place of the depth camera is the picture what lies behind the virtual content.
   static void requireSameEye(const CameraView& view, const CaptureState& state) {
     constexpr float kSame = 1e-4f;
-    const float turned = glm::length(view.forward - state.toWorld[2]) + glm::length(view.right - state.toWorld[0]);
+    const float turned =
+        glm::length(view.forward - state.toWorld[2]) + glm::length(view.right - state.toWorld[0]);
     if (glm::length(view.eye - state.eye) > kSame || turned > kSame)
-      throw Error("the camera does not stand where the depth camera stood; expected a camera with 'capture NAME'");
+      throw Error(
+          "the camera does not stand where the depth camera stood; expected a camera with 'capture NAME'");
   }
 };
 

@@ -1,4 +1,5 @@
-// Every pixel of the frames as a small light on a surface (Lensing & Broll 2013, Sec. 5): a map with a layer a frame.
+// Every pixel of the frames as a small light on a surface (Lensing & Broll 2013, Sec. 5): a map with a layer
+// a frame.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,22 +15,25 @@ namespace {
 namespace code = shaders::captured_frames;
 
 class LightsPass : public Pass {
-  enum class Noise { kinect, share };            // in the order of camera.glsl
+  enum class Noise { kinect, share };              // in the order of camera.glsl
   enum class Saturated { kept, dropped, scaled };  // in the order of lights.comp
 
   In<CapturedFrames> frames{this, "frames", "frames with depth, by read"};
-  Param<float> filter{this, "filter", 1.0f, within(0.0f, 8.0f),
-                      "standard deviation of the bilateral filter of depth, pixels; 0: depth as it was captured"};
-  Param<Noise> noise{this, "noise", Noise::kinect,
-                     "standard deviation of a depth; kinect: that of the sensor's axial noise (Nguyen et al. 2012); "
-                     "share: 'noise_share' of the depth"};
+  Param<float> filter{
+      this, "filter", 1.0f, within(0.0f, 8.0f),
+      "standard deviation of the bilateral filter of depth, pixels; 0: depth as it was captured"};
+  Param<Noise> noise{
+      this, "noise", Noise::kinect,
+      "standard deviation of a depth; kinect: that of the sensor's axial noise (Nguyen et al. 2012); "
+      "share: 'noise_share' of the depth"};
   Param<float> noiseShare{this, "noise_share", 0.002f, within(0.0f, 1.0f),
                           "with 'share': standard deviation of a depth over the depth"};
   Param<float> range{this, "range", 3.0f, within(0.01f, 100.0f),
                      "standard deviation of the filter over depth, in standard deviations of a depth"};
-  Param<Saturated> saturated{this, "saturated", Saturated::kept,
-                             "colours at the end of the file's range; kept: as they are; dropped: no light, for lamps "
-                             "that the scene has as lights; scaled: times 'saturated_scale'"};
+  Param<Saturated> saturated{
+      this, "saturated", Saturated::kept,
+      "colours at the end of the file's range; kept: as they are; dropped: no light, for lamps "
+      "that the scene has as lights; scaled: times 'saturated_scale'"};
   Param<float> saturatedScale{this, "saturated_scale", 10.0f, within(0.0f, 1e9f),
                               "with 'scaled': radiance of such a pixel over what the file holds"};
   Out<ReflectiveShadowMap> map{this, "map", Contributes::nothing, Needs::capturedFrame,
@@ -43,8 +47,9 @@ class LightsPass : public Pass {
   void run(PassContext& frame) override {
     const CaptureCamera& camera = frames->camera;
     const auto layers = [&](gpu::Format format, const char* label) {
-      return frame.texture({gpu::TextureKind::d2Array, format, camera.width, camera.height, std::max(frames->count, 1), 1},
-                           label);
+      return frame.texture(
+          {gpu::TextureKind::d2Array, format, camera.width, camera.height, std::max(frames->count, 1), 1},
+          label);
     };
     ReflectiveShadowMap result{.lights = eyes(frame),
                                .views = nullptr,
@@ -55,10 +60,12 @@ class LightsPass : public Pass {
                                .layerCount = frames->count,
                                .overlapping = 1};
     if (frames->count == 0)
-      for (const gpu::TextureRef& texture : {result.position, result.normal, result.flux}) texture->clear(glm::vec4(0.0f));
+      for (const gpu::TextureRef& texture : {result.position, result.normal, result.flux})
+        texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth = filter > 0.0f && frames->count > 0 ? filtered(frame) : frames->depth;
-    const gpu::BufferRef counts = frame.inspects() ? frame.emptyElements(code::lights::counts, kCounts, "counts of pixels")
-                                                   : frame.elements(code::lights::counts, kCounts, "no counts");
+    const gpu::BufferRef counts = frame.inspects()
+                                      ? frame.emptyElements(code::lights::counts, kCounts, "counts of pixels")
+                                      : frame.elements(code::lights::counts, kCounts, "no counts");
     // The newest first: what it holds, older ones leave out.
     for (int layer = 0; layer < frames->count; ++layer) {
       frame.dispatch(frame.program(code::lights::Variant{.counted = frame.inspects()}),
@@ -67,7 +74,8 @@ class LightsPass : public Pass {
                                                 .saturatedScale = saturatedScale}),
                       camera_(), code::lights::capturedColour(frames->colour, gpu::Sampling::nearest),
                       code::lights::filteredDepth(depth, gpu::Sampling::nearest),
-                      code::lights::capturedRays(frames->rays, gpu::Sampling::nearest), code::lights::poses(frames->poses),
+                      code::lights::capturedRays(frames->rays, gpu::Sampling::nearest),
+                      code::lights::poses(frames->poses),
                       code::lights::newerPosition(result.position, gpu::Sampling::nearest),
                       code::lights::positionImage(result.position), code::lights::normalImage(result.normal),
                       code::lights::fluxImage(result.flux), code::lights::counts(counts)},
@@ -81,13 +89,12 @@ class LightsPass : public Pass {
     const CaptureCamera& camera = frames->camera;
     const auto& k = camera.distortion;
     const auto number = [](double value) { return static_cast<float>(value); };
-    return {code::lights::captureCamera(
-        {.focal = glm::vec2(camera.focal),
-         .centre = glm::vec2(camera.centre),
-         .radial = {number(k[0]), number(k[1]), number(k[4]), 0.0f},
-         .tangential = {number(k[2]), number(k[3])},
-         .noise = static_cast<int>(Noise(noise)),
-         .noiseShare = noiseShare})};
+    return {code::lights::captureCamera({.focal = glm::vec2(camera.focal),
+                                         .centre = glm::vec2(camera.centre),
+                                         .radial = {number(k[0]), number(k[1]), number(k[4]), 0.0f},
+                                         .tangential = {number(k[2]), number(k[3])},
+                                         .noise = static_cast<int>(Noise(noise)),
+                                         .noiseShare = noiseShare})};
   }
 
   gpu::TextureRef filtered(PassContext& frame) const {
@@ -124,18 +131,20 @@ class LightsPass : public Pass {
     const std::vector<std::uint32_t> count = counts.downloadValues<std::uint32_t>();
     const double all = static_cast<double>(frames->camera.width) * frames->camera.height * frames->count;
     const auto percent = [&](std::size_t which) { return 100.0 * count[which] / all; };
-    frame.note(fmt::format("{:.1f} % of the pixels are lights; {:.1f} % have no depth or lie at an edge, {:.1f} % are "
-                           "saturated, {:.1f} % are seen by a newer frame",
-                           percent(0), percent(1), percent(2), percent(3)));
+    frame.note(fmt::format(
+        "{:.1f} % of the pixels are lights; {:.1f} % have no depth or lie at an edge, {:.1f} % are "
+        "saturated, {:.1f} % are seen by a newer frame",
+        percent(0), percent(1), percent(2), percent(3)));
   }
 };
 
 }  // namespace
 
 void addLights(TechniqueRegistry& registry) {
-  registry.add<LightsPass>("lights",
-                           "Every pixel as a light: place, normal, area and flux from depth and colour (Lensing & Broll "
-                           "2013, Sec. 5)");
+  registry.add<LightsPass>(
+      "lights",
+      "Every pixel as a light: place, normal, area and flux from depth and colour (Lensing & Broll "
+      "2013, Sec. 5)");
 }
 
 }  // namespace lumivox::captured_frames

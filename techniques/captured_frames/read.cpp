@@ -31,7 +31,8 @@ std::vector<float> raysOf(const CaptureCamera& camera) {
   const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
-      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
+      const auto at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
       const auto below = at + static_cast<std::size_t>(columns);
       const glm::dvec2 ray = camera.ray({x, y});
       const double area = 0.5 * cross(corners[below + 1] - corners[at], corners[below] - corners[at + 1]);
@@ -57,9 +58,13 @@ void appendColours(const CapturedImage& image, std::vector<float>& texels) {
 
 class ReadPass : public Pass {
   Param<int> number{this, "capture", 0, within(0, 255), "which capture of the scene, in its text's order"};
-  Param<int> wanted{this, "frames", 1, within(1, 64),
-                    "newest frames at this time, from the files: a frame alone has the same ones as in a sequence",
-                    published(1)};
+  Param<int> wanted{
+      this,
+      "frames",
+      1,
+      within(1, 64),
+      "newest frames at this time, from the files: a frame alone has the same ones as in a sequence",
+      published(1)};
   Out<CapturedFrames> frames{this, "frames", Contributes::nothing, Needs::capturedFrame, "the newest frames"};
 
   Reads readsFrom() const override { return Reads::capture; }
@@ -71,8 +76,8 @@ class ReadPass : public Pass {
     if (index >= captures.size()) {
       // With everything kept, the pass runs in scenes without a capture too.
       if (!captures.empty())
-        throw Error(fmt::format("capture {} of a scene that has {}; expected one from 0 to {}", index, captures.size(),
-                                captures.size() - 1));
+        throw Error(fmt::format("capture {} of a scene that has {}; expected one from 0 to {}", index,
+                                captures.size(), captures.size() - 1));
       frames = empty(frame);
       return;
     }
@@ -82,7 +87,8 @@ class ReadPass : public Pass {
     result.camera = capture.camera;
     result.count = std::min(wanted, static_cast<int>(newest) + 1);
     result.rays = frame.kept("rays of pixels", capture.hash, [&] {
-      gpu::TextureRef rays = texture(frame, capture.camera, gpu::TextureKind::d2, gpu::Format::rgba32f, 1, "rays of pixels");
+      gpu::TextureRef rays =
+          texture(frame, capture.camera, gpu::TextureKind::d2, gpu::Format::rgba32f, 1, "rays of pixels");
       rays->uploadFloats(0, raysOf(capture.camera));
       return rays;
     });
@@ -102,11 +108,11 @@ class ReadPass : public Pass {
                        glm::vec4(state.toWorld[1], 0.0f), glm::vec4(state.toWorld[2], 0.0f)});
       result.states.push_back(state);
     }
-    result.colour = texture(frame, capture.camera, gpu::TextureKind::d2Array, gpu::Format::rgba32f, result.count,
-                            "captured colours");
+    result.colour = texture(frame, capture.camera, gpu::TextureKind::d2Array, gpu::Format::rgba32f,
+                            result.count, "captured colours");
     result.colour->uploadFloats(0, colours);
-    result.depth =
-        texture(frame, capture.camera, gpu::TextureKind::d2Array, gpu::Format::r32f, result.count, "captured depths");
+    result.depth = texture(frame, capture.camera, gpu::TextureKind::d2Array, gpu::Format::r32f, result.count,
+                           "captured depths");
     result.depth->uploadFloats(0, depths);
     result.poses = frame.uploaded(poses, "poses of captured frames");
     frames = result;
@@ -122,9 +128,12 @@ class ReadPass : public Pass {
     result.camera.width = result.camera.height = 1;
     result.camera.focal = glm::dvec2(1.0);
     result.rays = texture(frame, result.camera, gpu::TextureKind::d2, gpu::Format::rgba32f, 1, "no rays");
-    result.colour = texture(frame, result.camera, gpu::TextureKind::d2Array, gpu::Format::rgba32f, 1, "no colours");
-    result.depth = texture(frame, result.camera, gpu::TextureKind::d2Array, gpu::Format::r32f, 1, "no depths");
-    for (const gpu::TextureRef& each : {result.rays, result.colour, result.depth}) each->clear(glm::vec4(0.0f));
+    result.colour =
+        texture(frame, result.camera, gpu::TextureKind::d2Array, gpu::Format::rgba32f, 1, "no colours");
+    result.depth =
+        texture(frame, result.camera, gpu::TextureKind::d2Array, gpu::Format::r32f, 1, "no depths");
+    for (const gpu::TextureRef& each : {result.rays, result.colour, result.depth})
+      each->clear(glm::vec4(0.0f));
     result.poses = frame.uploaded(std::vector<PoseData>{}, "no poses");
     return result;
   }

@@ -98,7 +98,8 @@ class ChoosePass : public Pass {
   SurfaceLights byFlux(PassContext& frame) const {
     const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
     const gpu::TextureDescription& flux = map->flux->description();
-    const auto width = static_cast<std::uint32_t>(flux.width), height = static_cast<std::uint32_t>(flux.height);
+    const auto width = static_cast<std::uint32_t>(flux.width),
+               height = static_cast<std::uint32_t>(flux.height);
     // TexelOrder in sum_tree.glsl. Where all lights have six views, those of one direction go together.
     constexpr int kCubeViews = 6;
     const bool inPatches = order == Order::patches;
@@ -124,8 +125,8 @@ class ChoosePass : public Pass {
       using Variant = accumulate::Variant;
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
       frame.dispatchList(frame.program(variant),
-                         {accumulate::parameters(
-                              {sizes[level - 1], firstOfAddends, firstOfSums, width, height, rows, together, ways}),
+                         {accumulate::parameters({sizes[level - 1], firstOfAddends, firstOfSums, width,
+                                                  height, rows, together, ways}),
                           texels, accumulate::tree(tree)},
                          sizes[level]);
       firstOfAddends = firstOfSums;
@@ -133,8 +134,8 @@ class ChoosePass : public Pass {
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
     frame.dispatchList(
         frame.program(choose::kProgram),
-        {choose::parameters({sizes.front(), levels, count, areaCode(), width, height, rows, together, ways}), texels,
-         choose::tree(tree), choose::taken(result.lights)},
+        {choose::parameters({sizes.front(), levels, count, areaCode(), width, height, rows, together, ways}),
+         texels, choose::tree(tree), choose::taken(result.lights)},
         count);
     return result;
   }
@@ -144,10 +145,11 @@ class ChoosePass : public Pass {
     const int across = (flux.width + stride - 1) / stride, down = (flux.height + stride - 1) / stride,
               count = across * down * flux.depth;
     const SurfaceLights result{room(frame, count), count, overlapping(frame)};
-    frame.dispatchList(frame.program(stride::kProgram),
-                       {stride::parameters({flux.width, flux.height, stride, across, down, count, areaCode()}),
-                        ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
-                       static_cast<std::uint64_t>(count));
+    frame.dispatchList(
+        frame.program(stride::kProgram),
+        {stride::parameters({flux.width, flux.height, stride, across, down, count, areaCode()}),
+         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
+        static_cast<std::uint64_t>(count));
     return result;
   }
 };

@@ -135,7 +135,8 @@ class GatherPass : public Pass {
           "'method projected' of a map without views of lights, such as a captured one; expected lights or all");
     const ReflectiveShadowMapBinding texels(*map);
     if (method == Method::all)
-      return addAll(map->flux->description().height * map->layerCount, parameters.width, Variant::methodAll, texels);
+      return addAll(map->flux->description().height * map->layerCount, parameters.width, Variant::methodAll,
+                    texels);
     parameters.lightCount = map->lightCount;
     parameters.samples = std::max(samples / map->lightCount, 1);
     parameters.reach = reach;

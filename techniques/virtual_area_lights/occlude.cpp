@@ -32,14 +32,16 @@ class OccludePass : public Pass {
     bool operator==(const OccludedKey&) const = default;
   };
 
-  bool uses(const InBase& input) const override { return occlusion || (&input != &points && &input != &occluders); }
+  bool uses(const InBase& input) const override {
+    return occlusion || (&input != &points && &input != &occluders);
+  }
 
   void run(PassContext& frame) override {
     SparseLight result = *unoccluded;
     if (occlusion) {
-      result.diffuse = frame.kept("occluded diffuse light", OccludedKey{result.diffuse, occluders ? occluders->lights : nullptr}, [&] {
-        return occlude(frame, unoccluded->diffuse, unoccluded->diffusePosition);
-      });
+      result.diffuse = frame.kept(
+          "occluded diffuse light", OccludedKey{result.diffuse, occluders ? occluders->lights : nullptr},
+          [&] { return occlude(frame, unoccluded->diffuse, unoccluded->diffusePosition); });
       if (result.glossy) result.glossy = occlude(frame, unoccluded->glossy, unoccluded->glossyPosition);
     }
     light = result;
@@ -56,8 +58,8 @@ class OccludePass : public Pass {
           occlude::Variant{.combine = static_cast<int>(static_cast<Combine>(combine)), .discs = discs});
       forEachPortion(total, 0, [&](int first, int count) {
         forEachPoint(frame, program,
-                     {occlude::parameters({first, count, begins && first == 0, ends && first + count == total,
-                                           asPublished}),
+                     {occlude::parameters(
+                          {first, count, begins && first == 0, ends && first + count == total, asPublished}),
                       SurfacePointsBinding(*points), from, occlude::lights(lights, gpu::Sampling::nearest),
                       occlude::places(places, gpu::Sampling::nearest), occlude::states(states),
                       occlude::occludedImage(result)},
@@ -66,7 +68,8 @@ class OccludePass : public Pass {
     };
     add(occlude::Variant::discsPoints, points->count, true, others == 0, {});
     if (others > 0)
-      add(occlude::Variant::discsSurfaces, others, points->count == 0, true, {occlude::surfaces(occluders->lights)});
+      add(occlude::Variant::discsSurfaces, others, points->count == 0, true,
+          {occlude::surfaces(occluders->lights)});
     return result;
   }
 };

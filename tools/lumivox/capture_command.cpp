@@ -31,8 +31,8 @@ struct CaptureCommand {
 
 /// Camera to world of the capture's axes: x right, y down, z forward.
 glm::dquat rotationOf(const CameraView& camera) {
-  return glm::normalize(
-      glm::quat_cast(glm::dmat3(glm::dvec3(camera.right), -glm::dvec3(camera.up), glm::dvec3(camera.forward))));
+  return glm::normalize(glm::quat_cast(
+      glm::dmat3(glm::dvec3(camera.right), -glm::dvec3(camera.up), glm::dvec3(camera.forward))));
 }
 
 /// The radiance that the brightest hundredth of the pixels with a surface exceeds.
@@ -42,7 +42,8 @@ double brightEnough(const ImageBuffer& image) {
     const float* pixel = image.values().data() + 3 * i;
     brightest.push_back(std::max({pixel[0], pixel[1], pixel[2]}));
   }
-  const auto last = brightest.begin() + static_cast<std::ptrdiff_t>(brightest.size() - 1 - brightest.size() / 100);
+  const auto last =
+      brightest.begin() + static_cast<std::ptrdiff_t>(brightest.size() - 1 - brightest.size() / 100);
   std::nth_element(brightest.begin(), last, brightest.end());
   return *last > 0.0f ? static_cast<double>(*last) : 1.0;
 }
@@ -68,7 +69,8 @@ WordImage units(const SeenDepths& seen, const std::vector<float>& depths) {
 
 class Writer {
  public:
-  Writer(const CaptureCommand& command, const Scene& scene) : command_(command), scene_(scene), options_(command.options) {}
+  Writer(const CaptureCommand& command, const Scene& scene)
+      : command_(command), scene_(scene), options_(command.options) {}
 
   void write(int frame) {
     options_.time = command_.options.time + frame / command_.framesPerSecond;
@@ -78,9 +80,11 @@ class Writer {
     focal_ = seen.focal;
     centre_ = {0.5 * (seen.width - 1), 0.5 * (seen.height - 1)};
     const std::vector<float> depths =
-        command_.noise == "kinect" ? kinectDepths(seen, options_.seed + static_cast<std::uint64_t>(frame)) : seen.depth;
+        command_.noise == "kinect" ? kinectDepths(seen, options_.seed + static_cast<std::uint64_t>(frame))
+                                   : seen.depth;
     const ImageBuffer colour =
-        (options_.useCache ? cachedReference(scene_, options_) : renderReference(scene_, options_)).layers.at("full");
+        (options_.useCache ? cachedReference(scene_, options_) : renderReference(scene_, options_))
+            .layers.at("full");
     const double time = frame / command_.framesPerSecond;
     if (command_.exr) {
       LayeredImage image;
@@ -98,8 +102,8 @@ class Writer {
     }
     const glm::dvec3 eye = glm::dvec3(snapshot.camera.eye) + snapshot.origin;
     const glm::dquat turned = rotationOf(snapshot.camera);
-    poses_ += fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.12g} {:.12g} {:.12g} {:.12g}\n", time, eye.x, eye.y, eye.z,
-                          turned.x, turned.y, turned.z, turned.w);
+    poses_ += fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.12g} {:.12g} {:.12g} {:.12g}\n", time, eye.x, eye.y,
+                          eye.z, turned.x, turned.y, turned.z, turned.w);
   }
 
   void finish() const {
@@ -111,8 +115,10 @@ class Writer {
   std::string block() const {
     const std::string folder = command_.output.string();
     std::string text = fmt::format("capture {} {{\n", command_.output.filename().string());
-    text += command_.exr ? fmt::format("  files \"{}/frame_####.exr\"\n", folder) : fmt::format("  folder \"{}\"\n", folder);
-    text += fmt::format("  focal {:.9g} {:.9g}  centre {:.9g} {:.9g}\n", focal_, focal_, centre_.x, centre_.y);
+    text += command_.exr ? fmt::format("  files \"{}/frame_####.exr\"\n", folder)
+                         : fmt::format("  folder \"{}\"\n", folder);
+    text +=
+        fmt::format("  focal {:.9g} {:.9g}  centre {:.9g} {:.9g}\n", focal_, focal_, centre_.x, centre_.y);
     if (!command_.exr) text += fmt::format("  exposure {:.6g}\n", exposure_);
     text += fmt::format("  stands_for \"{}\"\n}}\n", command_.scene.filename().string());
     return text;
@@ -137,7 +143,8 @@ int capture(CaptureCommand command, const GlobalOptions& global) {
   for (const char* file : {"groundtruth.txt", "rgb/0000.png", "depth/0000.png"})
     if (!command.exr || std::string(file) == "groundtruth.txt") requireWritable(command.output / file);
   InterruptionNote interruption;
-  interruption.say("interrupted: the poses of a capture are written at its end; from the start: " + global.commandLine);
+  interruption.say("interrupted: the poses of a capture are written at its end; from the start: " +
+                   global.commandLine);
   Writer writer(command, scene);
   for (int frame = first; frame <= last; ++frame) writer.write(frame);
   writer.finish();
@@ -150,26 +157,32 @@ int capture(CaptureCommand command, const GlobalOptions& global) {
 
 void addCaptureCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "capture", "writes what a depth camera would see of a scene: colour, depth and poses, in the TUM layout");
+      "capture",
+      "writes what a depth camera would see of a scene: colour, depth and poses, in the TUM layout");
   auto all = std::make_shared<CaptureCommand>();
   all->options.samplesPerPixel = 64;
-  takesNames(command->add_option("SCENE", all->scene, "the real scene's text or name")->required(), NamedText::scene);
+  takesNames(command->add_option("SCENE", all->scene, "the real scene's text or name")->required(),
+             NamedText::scene);
   command->add_option("-o,--out", all->output, "folder of the capture")->required();
-  command->add_option("--frames", all->frames, "frames of the scene's animation, such as 0..299 (default 0..0)");
+  command->add_option("--frames", all->frames,
+                      "frames of the scene's animation, such as 0..299 (default 0..0)");
   addFrameRate(*command, all->framesPerSecond);
   command->add_option("--spp", all->options.samplesPerPixel, "samples per pixel of the colours (default 64)")
       ->check(CLI::Range(2, 1 << 24));
   command
-      ->add_option("--noise", all->noise, "noise of depths; kinect: of that sensor, with its holes (default: none)")
+      ->add_option("--noise", all->noise,
+                   "noise of depths; kinect: of that sensor, with its holes (default: none)")
       ->check(CLI::IsMember({"none", "kinect"}));
   command->add_flag("--exr", all->exr, "EXR images of linear radiance and Z in place of PNG");
   command
-      ->add_option("--exposure", all->exposure,
-                   "radiance that a PNG shows as white, W/(sr m^2) (default: so that 1 % of the first frame is white)")
+      ->add_option(
+          "--exposure", all->exposure,
+          "radiance that a PNG shows as white, W/(sr m^2) (default: so that 1 % of the first frame is white)")
       ->check(numberBetween(1e-12, 1e12));
   addSeed(*command, all->options.seed, "of the noise");
   addTime(*command, all->options.time);
-  command->add_option("--camera", all->options.camera, "the scene's camera of this name (default: the first)");
+  command->add_option("--camera", all->options.camera,
+                      "the scene's camera of this name (default: the first)");
   command->add_option("--resolution", all->resolution, "width and height in pixels (default: the camera's)");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return capture(*all, global); });

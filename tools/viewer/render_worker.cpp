@@ -58,10 +58,11 @@ std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const Pi
   std::map<std::string, RunsWhen> runs;
   for (const auto& [pass, read] : all) {
     const auto any = [read = read](Reads set) { return (read & set) != Reads::nothing; };
-    runs[pass] =
-        any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
-        : any(Reads::geometry | Reads::lights | Reads::media | Reads::capture | Reads::time)     ? RunsWhen::somethingMoves
-                                                                                : RunsWhen::once;
+    runs[pass] = any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history)
+                     ? RunsWhen::everyFrame
+                 : any(Reads::geometry | Reads::lights | Reads::media | Reads::capture | Reads::time)
+                     ? RunsWhen::somethingMoves
+                     : RunsWhen::once;
   }
   return runs;
 }

@@ -329,7 +329,8 @@ std::string readFilePart(const std::filesystem::path& path, std::uint64_t offset
   const Descriptor file = openRegular(path, status);
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (offset > size || bytes > size - offset)
-    throw Error(fmt::format("{}: ends at byte {}; expected {} bytes from byte {} on", path.string(), size, bytes, offset));
+    throw Error(fmt::format("{}: ends at byte {}; expected {} bytes from byte {} on", path.string(), size,
+                            bytes, offset));
   requireMemory(bytes, path.string());
   if (lseek(file.get(), static_cast<off_t>(offset), SEEK_SET) < 0) fail(path, "read");
   std::string content = readSome(file, bytes, bytes, path);

@@ -198,8 +198,8 @@ std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display
 std::string encodePng(const ImageBuffer& linear, const Display& display,
                       const std::map<std::string, std::string>& attributes) {
   constexpr char kBitDepth = 8, kTrueColour = 2;
-  return encoded(displayBytes(linear, display), {linear.width(), linear.height(), kBitDepth, kTrueColour, kChannels},
-                 attributes);
+  return encoded(displayBytes(linear, display),
+                 {linear.width(), linear.height(), kBitDepth, kTrueColour, kChannels}, attributes);
 }
 
 void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display,
@@ -214,7 +214,8 @@ void writePng(const std::filesystem::path& path, const ImageBuffer& linear, cons
 }
 
 void writeGreyPng16(const std::filesystem::path& path, const WordImage& image) {
-  assert(image.values.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  assert(image.values.size() ==
+         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   constexpr char kBitDepth = 16, kGrey = 0;
   std::vector<unsigned char> bytes;  // the high byte first, Sec. 7.1
   bytes.reserve(2 * image.values.size());
@@ -228,7 +229,8 @@ void writeGreyPng16(const std::filesystem::path& path, const WordImage& image) {
 void writeBytePng(const std::filesystem::path& path, const ByteImage& image) {
   assert(image.channels == static_cast<int>(kChannels));
   constexpr char kBitDepth = 8, kTrueColour = 2;
-  writeFileAtomically(path, encoded(image.values, {image.width, image.height, kBitDepth, kTrueColour, kChannels}, {}));
+  writeFileAtomically(
+      path, encoded(image.values, {image.width, image.height, kBitDepth, kTrueColour, kChannels}, {}));
 }
 
 }  // namespace lumivox

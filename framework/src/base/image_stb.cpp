@@ -166,14 +166,16 @@ WordImage decodeGreyPng16(const std::string& file, const std::filesystem::path& 
     const int size = static_cast<int>(bytes.size());
     WordImage image;
     int channels = 0;
-    if (bytes[0] != 0x89 || stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &channels) == 0)
+    if (bytes[0] != 0x89 ||
+        stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &channels) == 0)
       refuse("is not a readable PNG; expected a grey PNG of 16 bits");
     checkPng(bytes);
     const bool has16Bits = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
     if (!has16Bits || channels != 1)
-      refuse(fmt::format("has {} bits and {} channel{}; expected a grey PNG of 16 bits", has16Bits ? 16 : 8, channels,
-                         channels == 1 ? "" : "s"));
-    const std::uint64_t count = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+      refuse(fmt::format("has {} bits and {} channel{}; expected a grey PNG of 16 bits", has16Bits ? 16 : 8,
+                         channels, channels == 1 ? "" : "s"));
+    const std::uint64_t count =
+        static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
     requireMemory(count * 6, fmt::format("an image of {} x {} pixels", image.width, image.height));
     const std::unique_ptr<stbi_us, decltype(&std::free)> pixels(
         stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &channels, 0), &std::free);

@@ -63,8 +63,8 @@ Reads whatChanged(const Scene& before, const Scene& after) {
   const auto same = [](const std::shared_ptr<const Capture>& a, const std::shared_ptr<const Capture>& b) {
     return a->hash == b->hash;
   };
-  if (!std::equal(before.captures.begin(), before.captures.end(), after.captures.begin(), after.captures.end(),
-                  same))
+  if (!std::equal(before.captures.begin(), before.captures.end(), after.captures.begin(),
+                  after.captures.end(), same))
     changed = changed | Reads::capture;
   return changed;
 }

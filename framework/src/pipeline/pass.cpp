@@ -43,8 +43,8 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
     bool met;
     const char* words;
   };
-  // An environment and captured frames count as lights: they arrive at surfaces like any other, so leaving them out would
-  // change the image.
+  // An environment and captured frames count as lights: they arrive at surfaces like any other, so leaving
+  // them out would change the image.
   const bool anyLight =
       traits.directionalLights + traits.pointLights + traits.spotLights + traits.areaLights > 0 ||
       traits.emission || traits.environment || traits.captures;

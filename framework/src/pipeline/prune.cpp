@@ -149,8 +149,7 @@ Reads whatMayChange(const PruneRequest& request) {
   const Reads camera = Reads::camera | Reads::partOfCamera;
   const Reads histories = request.accumulate ? Reads::history : Reads::nothing;
   if (request.interactive)
-    return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | Reads::capture |
-           histories;
+    return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | Reads::capture | histories;
   Reads result = Reads::time | histories;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
   if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;

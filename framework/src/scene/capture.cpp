@@ -83,9 +83,9 @@ Capture::~Capture() = default;
 std::size_t Capture::frameAt(double time) const {
   // Times of frames and of a video's frames are quotients that round differently.
   constexpr double kRounding = 1e-6;  // s
-  const auto later = std::upper_bound(
-      frames.begin(), frames.end(), time + kRounding,
-      [](double wanted, const CaptureFrame& frame) { return wanted < frame.time; });
+  const auto later =
+      std::upper_bound(frames.begin(), frames.end(), time + kRounding,
+                       [](double wanted, const CaptureFrame& frame) { return wanted < frame.time; });
   return later == frames.begin() ? 0 : static_cast<std::size_t>(later - frames.begin()) - 1;
 }
 
@@ -97,8 +97,9 @@ std::shared_ptr<const CapturedImage> Capture::image(std::size_t frame) const {
   if (found != images.end()) return found->second;
   auto image = std::make_shared<const CapturedImage>(source_->read(frame));
   if (image->width != camera.width || image->height != camera.height)
-    throw Error(fmt::format("capture '{}', frame {}: the depth image is {} x {}; expected {} x {} as that of the first",
-                            name, frame, image->width, image->height, camera.width, camera.height));
+    throw Error(fmt::format(
+        "capture '{}', frame {}: the depth image is {} x {}; expected {} x {} as that of the first", name,
+        frame, image->width, image->height, camera.width, camera.height));
   images.emplace_front(frame, image);
   if (images.size() > Cache::kMost) images.pop_back();
   return image;

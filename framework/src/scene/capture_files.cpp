@@ -33,9 +33,10 @@ std::string formatOf(const fs::path& folder) {
     hasDepthTexts = hasDepthTexts || entry.path().extension() == ".depth";
   }
   if (hasDepthTexts)
-    throw Error(fmt::format("{}: texts (.depth) of distances along rays, as ICL-NUIM publishes them beside its TUM "
-                            "form; expected that form, whose PNG files hold depths along z",
-                            folder.string()));
+    throw Error(
+        fmt::format("{}: texts (.depth) of distances along rays, as ICL-NUIM publishes them beside its TUM "
+                    "form; expected that form, whose PNG files hold depths along z",
+                    folder.string()));
   if (hasLog && exists(folder / "depth")) return "redwood";
   if (exists(folder / "pose") || !numberedFiles(folder, {".depth.png"}).empty()) return "frames";
   throw Error(fmt::format(
@@ -100,12 +101,15 @@ class ImagePairs : public CaptureSource {
     image.depth.reserve(depth.values.size());
     constexpr std::uint16_t kHole = 0, kNoReturn = 65535;
     for (const std::uint16_t units : depth.values)
-      image.depth.push_back(units == kHole || units == kNoReturn ? 0.0f : static_cast<float>(metres_ * units));
+      image.depth.push_back(units == kHole || units == kNoReturn ? 0.0f
+                                                                 : static_cast<float>(metres_ * units));
     constexpr double kSameShape = 0.01;
-    const double shape = static_cast<double>(colour.width) * depth.height / (static_cast<double>(colour.height) * depth.width);
+    const double shape =
+        static_cast<double>(colour.width) * depth.height / (static_cast<double>(colour.height) * depth.width);
     if (std::abs(shape - 1.0) > kSameShape)
-      throw Error(fmt::format("{}: a colour image of {} x {} beside depths of {} x {}; expected the same shape",
-                              files.colour.string(), colour.width, colour.height, depth.width, depth.height));
+      throw Error(
+          fmt::format("{}: a colour image of {} x {} beside depths of {} x {}; expected the same shape",
+                      files.colour.string(), colour.width, colour.height, depth.width, depth.height));
     addColour(colour, linear_, image);
     return image;
   }
@@ -189,7 +193,8 @@ FrameBytes bytesOfFiles() {
 }
 
 /// Frames within the range; Error where there are none.
-std::vector<ListedFrame> within(const CaptureListing& listing, const CaptureText& text, const fs::path& place) {
+std::vector<ListedFrame> within(const CaptureListing& listing, const CaptureText& text,
+                                const fs::path& place) {
   std::vector<ListedFrame> frames;
   for (const ListedFrame& frame : listing.frames)
     if (!text.range || (frame.number >= text.range->first && frame.number <= text.range->second))
@@ -210,12 +215,13 @@ void requireFewBytes(const std::vector<ListedFrame>& frames, const FrameBytes& b
     fitting += total <= kMostBytes;
   }
   if (total > kMostBytes)
-    throw Error(fmt::format("{}: {} frames of {}, all of which would be read; expected a range of at most {} frames",
-                            place.string(), frames.size(), formatBytes(total), fitting));
+    throw Error(
+        fmt::format("{}: {} frames of {}, all of which would be read; expected a range of at most {} frames",
+                    place.string(), frames.size(), formatBytes(total), fitting));
 }
 
-/// Moves a pose of the capture's world to ours. A negative focal length along y belongs to a left-handed world
-/// with y up: both its cameras and its world are mirrored along y.
+/// Moves a pose of the capture's world to ours. A negative focal length along y belongs to a left-handed
+/// world with y up: both its cameras and its world are mirrored along y.
 CapturePose placed(CapturePose pose, const CaptureText& text, bool mirrored) {
   if (mirrored) {
     pose.rotation = glm::dquat(pose.rotation.w, -pose.rotation.x, pose.rotation.y, -pose.rotation.z);
@@ -238,7 +244,10 @@ Reader readerOf(const std::string& format, const fs::path& place) {
     reader.bytes = {[file = reader.sens](const ListedFrame& frame) { return file->recordBytes(frame); },
                     [file = reader.sens](const ListedFrame& frame) { return file->record(frame); }};
   } else {
-    const auto list = format == "exr" ? listExr : format == "tum" ? listTum : format == "frames" ? listFrames : listRedwood;
+    const auto list = format == "exr"      ? listExr
+                      : format == "tum"    ? listTum
+                      : format == "frames" ? listFrames
+                                           : listRedwood;
     reader.listing = list(place);
   }
   return reader;
@@ -247,10 +256,14 @@ Reader readerOf(const std::string& format, const fs::path& place) {
 }  // namespace
 
 std::shared_ptr<Capture> loadCapture(const CaptureText& text, const fs::path& place, Hasher& hasher) {
-  const std::string format = text.file ? "sens" : text.files ? "exr" : text.format ? *text.format : formatOf(place);
+  const std::string format = text.file     ? "sens"
+                             : text.files  ? "exr"
+                             : text.format ? *text.format
+                                           : formatOf(place);
   const Reader reader = readerOf(format, place);
   if (reader.listing.frames.empty())
-    throw Error(fmt::format("{}: no frame has both a colour and a depth image; expected one", place.string()));
+    throw Error(
+        fmt::format("{}: no frame has both a colour and a depth image; expected one", place.string()));
   std::vector<ListedFrame> frames = within(reader.listing, text, place);
   const std::size_t wanted = frames.size();
   std::erase_if(frames, [](const ListedFrame& frame) { return !frame.pose; });
@@ -260,8 +273,7 @@ std::shared_ptr<Capture> loadCapture(const CaptureText& text, const fs::path& pl
   if (frames.empty())
     throw Error(fmt::format("{}: none of {} frames has a pose{}; expected one", place.string(), wanted,
                             format == "tum" ? " within 50 ms" : ""));
-  for (const std::string& remark : remarks)
-    logWarning("{}: {}: left out", place.string(), remark);
+  for (const std::string& remark : remarks) logWarning("{}: {}: left out", place.string(), remark);
   if (!text.range) requireFewBytes(frames, reader.bytes, place);
 
   Hasher own;
@@ -280,9 +292,10 @@ std::shared_ptr<Capture> loadCapture(const CaptureText& text, const fs::path& pl
     camera.focal = glm::dvec2(525.0);
     camera.centre = {319.5, 239.5};
   } else {
-    throw Error(fmt::format("{}: the camera's focal lengths are not known; expected focal FX FY and centre CX CY in the "
-                            "block 'capture {}'",
-                            place.string(), text.name));
+    throw Error(fmt::format(
+        "{}: the camera's focal lengths are not known; expected focal FX FY and centre CX CY in the "
+        "block 'capture {}'",
+        place.string(), text.name));
   }
   camera.distortion = text.distortion;
 

@@ -98,6 +98,7 @@ std::vector<std::pair<int, std::filesystem::path>> numberedFiles(const std::file
 
 /// Reads a capture from where `place` says: a folder, a .sens file or a pattern of EXR images. Error names
 /// file and line or frame. `hasher` takes the texts and the frames of the range.
-std::shared_ptr<Capture> loadCapture(const CaptureText& text, const std::filesystem::path& place, Hasher& hasher);
+std::shared_ptr<Capture> loadCapture(const CaptureText& text, const std::filesystem::path& place,
+                                     Hasher& hasher);
 
 }  // namespace lumivox

@@ -34,7 +34,8 @@ void join(const Numbered& colours, const Numbered& depths, CaptureListing& listi
     listing.frames.push_back(std::move(frame));
   }
   const std::size_t alone = depths.size() + colours.size() - 2 * listing.frames.size();
-  if (alone > 0) listing.remarks.push_back(fmt::format("{} images have no other image of their frame", alone));
+  if (alone > 0)
+    listing.remarks.push_back(fmt::format("{} images have no other image of their frame", alone));
 }
 
 /// frame-000000.color.png, .depth.png and .pose.txt in one folder; or folders color, depth and pose.
@@ -80,7 +81,8 @@ CaptureListing listRedwood(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == ".log") logs.push_back(entry.path());
   if (logs.size() != 1)
-    throw Error(fmt::format("{}: {} files end in .log; expected one trajectory", folder.string(), logs.size()));
+    throw Error(
+        fmt::format("{}: {} files end in .log; expected one trajectory", folder.string(), logs.size()));
   listing.texts = logs;
   const std::vector<TextLine> lines = linesOf(logs.front());
   constexpr std::size_t kItem = 5;  // a line of three numbers, and a matrix

@@ -69,9 +69,10 @@ void takeSize(Cursor& cursor, CaptureCamera& camera, const char* what, const fs:
   const auto width = cursor.take<std::uint32_t>(), height = cursor.take<std::uint32_t>();
   if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide || !(camera.focal.x > 0.0) ||
       !(camera.focal.y > 0.0))
-    throw Error(fmt::format("{}: {} images of {} x {} pixels with focal lengths of {:g} and {:g}; expected sides from 1 "
-                            "to {} and lengths above 0",
-                            file.string(), what, width, height, camera.focal.x, camera.focal.y, kLargestSide));
+    throw Error(fmt::format(
+        "{}: {} images of {} x {} pixels with focal lengths of {:g} and {:g}; expected sides from 1 "
+        "to {} and lengths above 0",
+        file.string(), what, width, height, camera.focal.x, camera.focal.y, kLargestSide));
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
 }
@@ -86,8 +87,8 @@ std::vector<std::uint16_t> depthsOf(std::string_view bytes, DepthKind kind, std:
   uLongf size = static_cast<uLongf>(pixels * sizeof(std::uint16_t));
   if (kind == DepthKind::zlib) {
     const uLongf expected = size;
-    if (uncompress(reinterpret_cast<Bytef*>(depths.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                   static_cast<uLong>(bytes.size())) != Z_OK ||
+    if (uncompress(reinterpret_cast<Bytef*>(depths.data()), &size,
+                   reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size())) != Z_OK ||
         size != expected)
       throw Error(fmt::format("{}: its depths do not unpack to {} bytes", name, expected));
   } else {
@@ -112,10 +113,12 @@ SensFile::SensFile(fs::path path) : path_(std::move(path)) {
   const std::string start = readFileStart(path_, kLongestName + 1024);
   Cursor cursor(start, path_);
   if (const auto version = cursor.take<std::uint32_t>(); version != kVersion)
-    throw Error(fmt::format("{}: is of version {}; expected a .sens file of version {}", path_.string(), version, kVersion));
+    throw Error(fmt::format("{}: is of version {}; expected a .sens file of version {}", path_.string(),
+                            version, kVersion));
   const auto nameBytes = cursor.take<std::uint64_t>();
   if (nameBytes > kLongestName)
-    throw Error(fmt::format("{}: claims a name of {} bytes; expected at most {}", path_.string(), nameBytes, kLongestName));
+    throw Error(fmt::format("{}: claims a name of {} bytes; expected at most {}", path_.string(), nameBytes,
+                            kLongestName));
   cursor.text(nameBytes);
   colour_ = cameraOf(cursor.matrix());
   const glm::dmat4 colourPose = cursor.matrix();
@@ -128,16 +131,17 @@ SensFile::SensFile(fs::path path) : path_(std::move(path)) {
   colourKind_ = cursor.take<std::int32_t>();
   depthKind_ = cursor.take<std::int32_t>();
   if (colourKind_ != static_cast<int>(ColourKind::png) && colourKind_ != static_cast<int>(ColourKind::jpeg))
-    throw Error(fmt::format("{}: colours are compressed as kind {}{}; expected PNG (1) or JPEG (2)", path_.string(),
-                            colourKind_, colourKind_ == 0 ? " (raw)" : ""));
+    throw Error(fmt::format("{}: colours are compressed as kind {}{}; expected PNG (1) or JPEG (2)",
+                            path_.string(), colourKind_, colourKind_ == 0 ? " (raw)" : ""));
   if (depthKind_ != static_cast<int>(DepthKind::raw) && depthKind_ != static_cast<int>(DepthKind::zlib))
-    throw Error(fmt::format("{}: depths are compressed as kind {}{}; expected raw (0) or zlib (1)", path_.string(),
-                            depthKind_, depthKind_ == 2 ? " (OCCI)" : ""));
+    throw Error(fmt::format("{}: depths are compressed as kind {}{}; expected raw (0) or zlib (1)",
+                            path_.string(), depthKind_, depthKind_ == 2 ? " (OCCI)" : ""));
   takeSize(cursor, colour_, "colour", path_);
   takeSize(cursor, depth_, "depth", path_);
   const auto shift = static_cast<double>(cursor.take<float>());
   if (!(shift > 0.0) || !std::isfinite(shift))
-    throw Error(fmt::format("{}: a depth shift of {:g}; expected the units in a metre, above 0", path_.string(), shift));
+    throw Error(fmt::format("{}: a depth shift of {:g}; expected the units in a metre, above 0",
+                            path_.string(), shift));
   metres_ = 1.0 / shift;
   const auto count = cursor.take<std::uint64_t>();
   if (count > (fileBytes_ - std::min(fileBytes_, cursor.at())) / kRecordHeadBytes)
@@ -191,13 +195,14 @@ CapturedImage SensFile::decode(const ListedFrame& frame, const std::array<float,
   const std::string_view depthBytes = std::string_view(bytes).substr(kRecordHeadBytes + head.colourBytes);
   const ByteImage colour = decodeByteImage(colourBytes, name);
   if (colour.width != colour_.width || colour.height != colour_.height)
-    throw Error(fmt::format("{}: the colour image is {} x {}; expected {} x {} as the header says", name, colour.width,
-                            colour.height, colour_.width, colour_.height));
+    throw Error(fmt::format("{}: the colour image is {} x {}; expected {} x {} as the header says", name,
+                            colour.width, colour.height, colour_.width, colour_.height));
   CapturedImage image;
   image.width = depth_.width;
   image.height = depth_.height;
   const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  const std::vector<std::uint16_t> units = depthsOf(depthBytes, static_cast<DepthKind>(depthKind_), pixels, name);
+  const std::vector<std::uint16_t> units =
+      depthsOf(depthBytes, static_cast<DepthKind>(depthKind_), pixels, name);
   image.depth.resize(pixels, 0.0f);
   image.colour.assign(3 * pixels, std::numeric_limits<float>::quiet_NaN());
   // Where each point falls in the colour image, and the nearest point of each of its pixels.
@@ -215,7 +220,8 @@ CapturedImage SensFile::decode(const ListedFrame& frame, const std::array<float,
     if (!(point.z > 0.0)) continue;
     const glm::dvec2 pixel = colour_.project(glm::dvec2(point) / point.z) + 0.5;
     if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < colour.width && pixel.y < colour.height)) continue;
-    const std::int64_t place = static_cast<std::int64_t>(pixel.y) * colour.width + static_cast<std::int64_t>(pixel.x);
+    const std::int64_t place =
+        static_cast<std::int64_t>(pixel.y) * colour.width + static_cast<std::int64_t>(pixel.x);
     places[i] = {place, static_cast<float>(point.z)};
     float& first = nearest[static_cast<std::size_t>(place)];
     first = std::min(first, static_cast<float>(point.z));

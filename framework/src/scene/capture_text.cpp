@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -34,14 +34,16 @@ std::vector<TextLine> linesOf(const fs::path& file) {
   return lines;
 }
 
-void refuseLine(const fs::path& file, const TextLine& line, std::string_view what, std::string_view expected) {
+void refuseLine(const fs::path& file, const TextLine& line, std::string_view what,
+                std::string_view expected) {
   throw Error(fmt::format("{}:{}: {}; expected {}", file.string(), line.number, what, expected));
 }
 
 double numberOf(const fs::path& file, const TextLine& line, std::size_t word) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   if (word >= line.words.size())
-    refuseLine(file, line, fmt::format("{} numbers", line.words.size()), fmt::format("at least {}", word + 1));
+    refuseLine(file, line, fmt::format("{} numbers", line.words.size()),
+               fmt::format("at least {}", word + 1));
   std::string text = line.words[word];
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   if (text.find("nan") != std::string::npos || text.find("#ind") != std::string::npos) return kNaN;
@@ -58,7 +60,8 @@ glm::dmat4 matrixOf(const fs::path& file, const std::vector<TextLine>& lines, st
   glm::dmat4 matrix;
   for (int row = 0; row < 4; ++row) {
     if (first + static_cast<std::size_t>(row) >= lines.size())
-      throw Error(fmt::format("{}: the matrix ends after {} rows; expected 4 rows of 4 numbers", file.string(), row));
+      throw Error(
+          fmt::format("{}: the matrix ends after {} rows; expected 4 rows of 4 numbers", file.string(), row));
     const TextLine& line = lines[first + static_cast<std::size_t>(row)];
     if (line.words.size() != 4)
       refuseLine(file, line, fmt::format("{} numbers in the row of a matrix", line.words.size()), "4");
@@ -71,7 +74,8 @@ glm::dmat4 matrixOf(const fs::path& file, const std::vector<TextLine>& lines, st
 std::optional<CapturePose> poseOf(const glm::dquat& rotation, const glm::dvec3& eye) {
   constexpr double kFarthest = 1e9;  // m, as kFarthestPlace of texts
   const double length = glm::length(rotation);
-  const bool isFinite = std::isfinite(length) && std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z);
+  const bool isFinite =
+      std::isfinite(length) && std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z);
   if (!isFinite || length < 0.5 || length > 2.0 ||
       std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) > kFarthest)
     return std::nullopt;
@@ -89,7 +93,8 @@ std::optional<CapturePose> poseOf(const glm::dmat4& cameraToWorld) {
   constexpr double kNotARotation = 1e-2;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
-      if (!(std::abs(product[column][row] - (column == row ? 1.0 : 0.0)) <= kNotARotation)) return std::nullopt;
+      if (!(std::abs(product[column][row] - (column == row ? 1.0 : 0.0)) <= kNotARotation))
+        return std::nullopt;
   if (!(glm::determinant(rotation) > 0.0)) return std::nullopt;
   return poseOf(glm::quat_cast(rotation), glm::dvec3(cameraToWorld[3]));
 }
@@ -105,14 +110,16 @@ std::vector<std::pair<int, fs::path>> numberedFiles(const fs::path& folder,
       return name.size() > one.size() && name.ends_with(one);
     });
     if (ending == endings.end() || !name.starts_with(begin)) continue;
-    const std::string stem = name.substr(begin.size(), name.size() - std::min(name.size(), begin.size() + ending->size()));
+    const std::string stem =
+        name.substr(begin.size(), name.size() - std::min(name.size(), begin.size() + ending->size()));
     const std::size_t last = stem.find_last_of("0123456789");
     if (last == std::string::npos) continue;
     const std::size_t before = stem.find_last_not_of("0123456789", last);
     const std::size_t first = before == std::string::npos ? 0 : before + 1;
     int number = 0;
     const char* end = stem.data() + last + 1;
-    if (std::from_chars(stem.data() + first, end, number).ec == std::errc()) files.emplace_back(number, entry.path());
+    if (std::from_chars(stem.data() + first, end, number).ec == std::errc())
+      files.emplace_back(number, entry.path());
   }
   std::sort(files.begin(), files.end());
   const auto doubled = std::adjacent_find(files.begin(), files.end(),

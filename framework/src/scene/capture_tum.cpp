@@ -47,7 +47,9 @@ std::vector<TimedFile> timedFiles(const fs::path& file) {
 }
 
 /// "depth/1305031102.160407.png" names a depth image by its folder.
-bool namesDepth(const std::string& name) { return name.find("depth") != std::string::npos; }
+bool namesDepth(const std::string& name) {
+  return name.find("depth") != std::string::npos;
+}
 
 /// Four columns, either order of the pair; lines of which one name is missing are left out.
 void addAssociated(const fs::path& file, const fs::path& folder, CaptureListing& listing) {
@@ -68,7 +70,8 @@ void addAssociated(const fs::path& file, const fs::path& folder, CaptureListing&
     listing.frames.push_back(std::move(frame));
   }
   if (missing > 0)
-    listing.remarks.push_back(fmt::format("{} lines of {} do not name a pair", missing, file.filename().string()));
+    listing.remarks.push_back(
+        fmt::format("{} lines of {} do not name a pair", missing, file.filename().string()));
 }
 
 /// Joins each depth image with the colour image nearest in time, nearest pairs first, each image once.
@@ -86,9 +89,10 @@ void addNearest(const fs::path& folder, CaptureListing& listing) {
     const auto first =
         std::lower_bound(colours.begin(), colours.end(), depths[d].time - kMostBetweenImages,
                          [](const TimedFile& colour, double time) { return colour.time < time; });
-    for (auto colour = first; colour != colours.end() && colour->time <= depths[d].time + kMostBetweenImages; ++colour)
-      candidates.push_back({std::abs(colour->time - depths[d].time), d,
-                            static_cast<std::size_t>(colour - colours.begin())});
+    for (auto colour = first; colour != colours.end() && colour->time <= depths[d].time + kMostBetweenImages;
+         ++colour)
+      candidates.push_back(
+          {std::abs(colour->time - depths[d].time), d, static_cast<std::size_t>(colour - colours.begin())});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.apart < b.apart; });

@@ -120,7 +120,8 @@ class Reader {
       if (!item.block) continue;
       // A misspelt block is a finding of its own: its name is known all the same.
       std::string word = item.block->word;
-      if (!known(grammar_, *item.block)) word = suggestionFor(findings_, word, {"material", "mesh", "capture"});
+      if (!known(grammar_, *item.block))
+        word = suggestionFor(findings_, word, {"material", "mesh", "capture"});
       if (word != "material" && word != "mesh" && word != "capture") continue;
       const std::string name = CheckedBlock(*item.block, specificationOf(grammar_, word)).name();
       if (!name.empty())
@@ -579,9 +580,14 @@ class Reader {
     text.format = block.text("format", "");
     const bool isSens = text.format == "sens", isExr = text.format == "exr";
     if (isSens != text.file.has_value() || isExr != text.files.has_value())
-      report(*property, fmt::format("format '{}' beside '{}'", *text.format,
-                                    text.folder ? "folder" : text.file ? "file" : "files"),
-             isSens ? "file \"NAME.sens\"" : isExr ? "files \"NAME_####.exr\"" : "folder \"FOLDER\"");
+      report(*property,
+             fmt::format("format '{}' beside '{}'", *text.format,
+                         text.folder ? "folder"
+                         : text.file ? "file"
+                                     : "files"),
+             isSens  ? "file \"NAME.sens\""
+             : isExr ? "files \"NAME_####.exr\""
+                     : "folder \"FOLDER\"");
   }
 
   void readCaptureCamera(const CheckedBlock& block, CaptureText& text) {
@@ -602,8 +608,8 @@ class Reader {
     if (block.has("depth_scale")) text.depthScale = block.number("depth_scale", 1.0);
     const Property* property = block.find("distortion");
     if (property == nullptr) return;
-    const bool numbers = std::all_of(
-        property->values.begin(), property->values.end(), [](const dsl::Value& value) {
+    const bool numbers =
+        std::all_of(property->values.begin(), property->values.end(), [](const dsl::Value& value) {
           return value.kind == dsl::ValueKind::number && !value.unit && std::abs(value.number) <= 1e3;
         });
     if (!numbers || property->values.size() != text.distortion.size()) {

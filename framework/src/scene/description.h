@@ -107,7 +107,8 @@ SceneDescription describeScene(const dsl::Document& document, std::vector<Diagno
 inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
 inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
 inline const std::vector<std::string> kVolumeFormats{".vdb"};
-inline const std::vector<std::string> kSensorFormats{".sens"}, kFloatImageFormats{".exr"}, kSceneFormats{".scene"};
+inline const std::vector<std::string> kSensorFormats{".sens"}, kFloatImageFormats{".exr"},
+    kSceneFormats{".scene"};
 bool hasFormat(const std::string& name, const std::vector<std::string>& formats);
 
 /// Whether `name` matches a pattern, in which * stands for any letters and ? for one.

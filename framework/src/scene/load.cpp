@@ -98,7 +98,8 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
                                        : !assets.isLocal(name) || assets.findAny(name))
         continue;
       findings.push_back(document.finding(
-          place.place, place.length, fmt::format("{} '{}' does not exist", capture.folder ? "capture folder" : "file of poses", name),
+          place.place, place.length,
+          fmt::format("{} '{}' does not exist", capture.folder ? "capture folder" : "file of poses", name),
           "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
     }
   }
@@ -138,7 +139,8 @@ class Loader {
     }
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
-    for (const CaptureText& capture : description_.captures) attempt(capture.source(), [&] { addCapture(capture); });
+    for (const CaptureText& capture : description_.captures)
+      attempt(capture.source(), [&] { addCapture(capture); });
     if (isWhole_) sizeCapturedViews();
     if (isWhole_ && read_.size() == description_.meshes.size()) checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
@@ -242,15 +244,16 @@ class Loader {
     const std::string& name = text.source().text;
     const auto place = text.files ? assets_.findAny(posesBeside(name)) : assets_.findAny(name);
     if (!place)
-      throw AbsentError(fmt::format("{}: the files of capture '{}' were not found; searched {}", document_.file.string(),
-                                    text.name, assets_.soughtAt(text.files ? posesBeside(name) : name)));
+      throw AbsentError(fmt::format("{}: the files of capture '{}' were not found; searched {}",
+                                    document_.file.string(), text.name,
+                                    assets_.soughtAt(text.files ? posesBeside(name) : name)));
     const auto capture =
         loadCapture(text, text.files ? place->parent_path() / fs::path(name).filename() : *place, hasher_);
     if (text.standsFor) {
       SceneLoadOptions real = options_;
       real.mayHoldCaptures = false;
-      capture->realScene = std::make_shared<const Scene>(
-          loadScene(found(text.standsFor->text, "the scene that capture '" + text.name + "' stands for"), real));
+      capture->realScene = std::make_shared<const Scene>(loadScene(
+          found(text.standsFor->text, "the scene that capture '" + text.name + "' stands for"), real));
     }
     scene_.captures.push_back(capture);
   }
@@ -581,7 +584,8 @@ Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& option
   const SceneDescription description = describeScene(document, findings);
   if (!options.mayHoldCaptures) {
     for (const CaptureText& capture : description.captures)
-      findings.push_back(document.finding(capture.place, 7, "a capture within the scene that a capture stands for",
+      findings.push_back(document.finding(capture.place, 7,
+                                          "a capture within the scene that a capture stands for",
                                           "a scene of triangles and lights"));
   }
   findMissingFiles(document, description, assets, Purpose::rendering, findings);

@@ -321,11 +321,10 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   const auto moves = [](const std::shared_ptr<const Capture>& capture) { return capture->frames.size() > 1; };
   traits.captures = !scene.captures.empty();
   traits.movingCaptures = std::any_of(scene.captures.begin(), scene.captures.end(), moves);
-  traits.movingCamera =
-      std::any_of(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& camera) {
-        return camera.capture >= 0 ? moves(scene.captures.at(static_cast<std::size_t>(camera.capture)))
-                                   : camera.keys.size() > 1;
-      });
+  traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& camera) {
+    return camera.capture >= 0 ? moves(scene.captures.at(static_cast<std::size_t>(camera.capture)))
+                               : camera.keys.size() > 1;
+  });
   for (const Light& light : scene.lights) {
     if (light.power == glm::vec3(0.0f)) continue;
     traits.directionalLights += light.kind == LightKind::directional ? 1 : 0;

@@ -198,7 +198,8 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
   for (const auto& capture : scene.captures)
-    if (capture->realScene) hasher.add("stands for").add(capture->realScene->hash.high).add(capture->realScene->hash.low);
+    if (capture->realScene)
+      hasher.add("stands for").add(capture->realScene->hash.high).add(capture->realScene->hash.low);
   hasher.add(options.samplesPerPixel)
       .add(options.bounces)
       .add(options.roulette)

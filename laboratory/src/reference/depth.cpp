@@ -26,7 +26,9 @@ double axialDeviation(double depth, double angle) {
   return deviation;
 }
 
-double lateralDeviation(double angle) { return 0.8 + 0.035 * angle / (0.5 * std::numbers::pi - angle); }
+double lateralDeviation(double angle) {
+  return 0.8 + 0.035 * angle / (0.5 * std::numbers::pi - angle);
+}
 
 /// Disparities have steps: so have depths, wider with the square of the distance.
 double quantised(double depth) {
@@ -50,7 +52,8 @@ SeenDepths seenDepths(const Scene& scene, const SceneSnapshot& snapshot, double 
   const glm::vec3 projector = camera.eye - static_cast<float>(baseline) * camera.right;
   tbb::parallel_for(0, camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
-      const glm::vec3 direction = camera.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const glm::vec3 direction =
+          camera.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
       reference::Hit hit;
       const float length = glm::length(direction);
       if (!rays.closestHit(camera.eye, direction / length, hit)) continue;
@@ -71,23 +74,25 @@ SeenDepths seenDepths(const Scene& scene, const SceneSnapshot& snapshot, double 
 }
 
 std::vector<float> kinectDepths(const SeenDepths& seen, std::uint64_t seed) {
-  constexpr double kNearest = 0.5, kFarthest = 5.0;                  // m
+  constexpr double kNearest = 0.5, kFarthest = 5.0;  // m
   constexpr double kSteepest = 80.0 / 180.0 * std::numbers::pi;
   std::vector<float> depths(seen.depth.size(), 0.0f);
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
       const auto index = [&](int column, int row) {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(seen.width) + static_cast<std::size_t>(column);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(seen.width) +
+               static_cast<std::size_t>(column);
       };
       const std::size_t at = index(x, y);
       RandomStream random(seed, static_cast<std::uint32_t>(at));
-      const double lateral = seen.depth[at] > 0.0f ? lateralDeviation(std::min<double>(seen.angle[at], kSteepest)) : 0.0;
+      const double lateral =
+          seen.depth[at] > 0.0f ? lateralDeviation(std::min<double>(seen.angle[at], kSteepest)) : 0.0;
       const double right = lateral * normal(random), down = lateral * normal(random), along = normal(random);
-      const std::size_t from =
-          index(std::clamp(x + static_cast<int>(std::lround(right)), 0, seen.width - 1),
-                std::clamp(y + static_cast<int>(std::lround(down)), 0, seen.height - 1));
+      const std::size_t from = index(std::clamp(x + static_cast<int>(std::lround(right)), 0, seen.width - 1),
+                                     std::clamp(y + static_cast<int>(std::lround(down)), 0, seen.height - 1));
       const double depth = seen.depth[from], angle = seen.angle[from];
-      if (!(depth > kNearest) || depth > kFarthest || angle > kSteepest || seen.projected[from] == 0) continue;
+      if (!(depth > kNearest) || depth > kFarthest || angle > kSteepest || seen.projected[from] == 0)
+        continue;
       const double measured = quantised(depth + along * axialDeviation(depth, angle));
       if (measured >= kNearest && measured <= kFarthest) depths[at] = static_cast<float>(measured);
     }

@@ -161,7 +161,8 @@ LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& 
   const ReferenceOptions& options = resolved.options;
   const std::optional<Scene> merged = withRealScenes(virtualScene);
   const Scene& scene = merged ? *merged : virtualScene;
-  if (merged) resolved.snapshot = snapshotOf(scene, options.time, options.camera, options.width, options.height);
+  if (merged)
+    resolved.snapshot = snapshotOf(scene, options.time, options.camera, options.width, options.height);
   if (options.samplesPerPixel < 2) {
     throw Error(
         "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");

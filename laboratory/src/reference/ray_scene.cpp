@@ -53,7 +53,8 @@ RayScene::RayScene(const Scene& scene, const SceneSnapshot& snapshot) {
                          material.glossy(), material.emissive()});
   }
   for (const Object& object : scene.objects)
-    for (const Part& part : object.parts) materials.at(static_cast<std::size_t>(part.material)).real = object.real;
+    for (const Part& part : object.parts)
+      materials.at(static_cast<std::size_t>(part.material)).real = object.real;
   collect(scene, snapshot);
   build();
 }

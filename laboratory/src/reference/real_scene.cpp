@@ -56,12 +56,15 @@ void add(Scene& scene, const Scene& real) {
 }  // namespace
 
 std::optional<Scene> withRealScenes(const Scene& scene) {
-  const auto standsForScene = [](const std::shared_ptr<const Capture>& capture) { return capture->realScene != nullptr; };
+  const auto standsForScene = [](const std::shared_ptr<const Capture>& capture) {
+    return capture->realScene != nullptr;
+  };
   if (std::none_of(scene.captures.begin(), scene.captures.end(), standsForScene)) return std::nullopt;
   Scene merged = scene;
   std::set<ContentHash> hashes;
   for (const auto& capture : scene.captures)
-    if (standsForScene(capture) && hashes.insert(capture->realScene->hash).second) add(merged, *capture->realScene);
+    if (standsForScene(capture) && hashes.insert(capture->realScene->hash).second)
+      add(merged, *capture->realScene);
   return merged;
 }
 

@@ -29,7 +29,8 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
 /// The first bytes of a file, at most `limitBytes`; refuses what readFile refuses, but no size.
 std::string readFileStart(const std::filesystem::path& path, std::uint64_t limitBytes);
 
-/// So many bytes from `offset` on. Refuses what readFile refuses, but no size; Error where the file ends before.
+/// So many bytes from `offset` on. Refuses what readFile refuses, but no size; Error where the file ends
+/// before.
 std::string readFilePart(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
 /// Error when the name exists and is not a regular file: for libraries that open files by themselves.

@@ -55,7 +55,8 @@ class ImageBuffer {
 
 /// Several images of one size under names, and text attributes: what one EXR file holds. The layer "" is
 /// the file's main layer (channels R, G, B without prefix); three channels are named R G B, four R G B A, one
-/// Y (a layer "Z" is the channel Z, as depths are named), two X Y. Layers that are no radiance although they have several channels are named in an attribute.
+/// Y (a layer "Z" is the channel Z, as depths are named), two X Y. Layers that are no radiance although they
+/// have several channels are named in an attribute.
 struct LayeredImage {
   std::map<std::string, ImageBuffer> layers;
   std::map<std::string, std::string> attributes;

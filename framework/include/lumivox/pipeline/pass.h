@@ -51,8 +51,8 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits);
 /// also the image's size, but not the lens. lens: aperture and focus; passes without it render as through a
 /// pinhole. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index. history:
 /// results of earlier frames, by PassContext::history() and accumulated(); with accumulation
-/// (RenderOptions::accumulate) such a pass runs in every frame. capture: the frames of captures that belong to
-/// the time; it changes with the frame, not with the clock.
+/// (RenderOptions::accumulate) such a pass runs in every frame. capture: the frames of captures that belong
+/// to the time; it changes with the frame, not with the clock.
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,

@@ -18,8 +18,8 @@ namespace lumivox {
 struct Scene;
 
 /// The pinhole of a capture in OpenCV's convention: the centre of the upper left pixel has the coordinates
-/// (0, 0), x runs right, y down and z forward. A ray is (x, y, 1), and depth is measured along z, not along the
-/// ray.
+/// (0, 0), x runs right, y down and z forward. A ray is (x, y, 1), and depth is measured along z, not along
+/// the ray.
 struct CaptureCamera {
   int width = 0, height = 0;           ///< of the depth image
   glm::dvec2 focal{0}, centre{0};      ///< pixels; both focal lengths are above 0
@@ -36,9 +36,9 @@ struct CaptureCamera {
 
 /// The pose and the time of one frame.
 struct CaptureFrame {
-  double time = 0.0;               ///< s of the scene: the first frame has 0
+  double time = 0.0;                ///< s of the scene: the first frame has 0
   glm::dquat rotation{1, 0, 0, 0};  ///< camera (x right, y down, z forward) to world; unit length
-  glm::dvec3 eye{0};               ///< m, world
+  glm::dvec3 eye{0};                ///< m, world
 };
 
 /// One frame's pixels, row by row from the top, in the camera's size.
@@ -62,9 +62,10 @@ class Capture {
  public:
   std::string name;
   CaptureCamera camera;
-  std::vector<CaptureFrame> frames;       ///< at least one, in the order of their times
-  std::shared_ptr<const Scene> realScene;  ///< what the capture stands for, for the reference alone; may be null
-  ContentHash hash;                       ///< of the text's block, the texts of the capture and its frames
+  std::vector<CaptureFrame> frames;  ///< at least one, in the order of their times
+  std::shared_ptr<const Scene>
+      realScene;     ///< what the capture stands for, for the reference alone; may be null
+  ContentHash hash;  ///< of the text's block, the texts of the capture and its frames
 
   Capture(std::string name, CaptureCamera camera, std::vector<CaptureFrame> frames,
           std::unique_ptr<const CaptureSource> source);
@@ -72,8 +73,8 @@ class Capture {
 
   /// The last frame that is not after `time`; the first before all.
   std::size_t frameAt(double time) const;
-  /// The decoded frame. The last few are kept. Error as CaptureSource::read(), also for a frame of another size
-  /// than the first.
+  /// The decoded frame. The last few are kept. Error as CaptureSource::read(), also for a frame of another
+  /// size than the first.
   std::shared_ptr<const CapturedImage> image(std::size_t frame) const;
 
  private:

@@ -122,8 +122,8 @@ struct Camera {
   double focus =
       0.0;  ///< distance of the plane in focus along the view axis, m; above 0 where there is a lens
   std::vector<CameraKey> keys;
-  /// Index into Scene::captures: the camera stands where that capture's camera stood, and eye, target, up, fov,
-  /// lens and keys do not count. -1 for none.
+  /// Index into Scene::captures: the camera stands where that capture's camera stood, and eye, target, up,
+  /// fov, lens and keys do not count. -1 for none.
   int capture = -1;
 };
 
@@ -241,9 +241,9 @@ struct SceneSnapshot {
   glm::dvec3 origin{0};
   CameraView camera;
   std::vector<LightState> lights;
-  std::vector<ObjectState> objects;  ///< parallel to Scene::objects
+  std::vector<ObjectState> objects;    ///< parallel to Scene::objects
   std::vector<CaptureState> captures;  ///< parallel to Scene::captures
-  Bounds bounds;                     ///< of all triangles
+  Bounds bounds;                       ///< of all triangles
   /// Bounds for grids around the scene, so that a grid stays where it is while things move: of everything
   /// that the objects cover while they turn and deform; where they travel, grown in steps. A function of the
   /// time alone.

@@ -6,8 +6,8 @@ namespace lumivox {
 
 /// The surfaces that each light sees, as a source of one-bounce light (Dachsbacher & Stamminger 2005): every
 /// texel is a small light. Lights and layers are those of a ShadowMap with the same settings; all layers have
-/// one size. A map that a depth camera captured (captured_frames.lights) has layers of any shape, eyes without
-/// power in the place of lights, and no views.
+/// one size. A map that a depth camera captured (captured_frames.lights) has layers of any shape, eyes
+/// without power in the place of lights, and no views.
 struct ReflectiveShadowMap {
   gpu::BufferRef lights;
   gpu::BufferRef views;
