@@ -91,18 +91,20 @@ Rendered renderedOrRefused(PipelineExecutor& executor, double time) {
   }
 }
 
-/// Through every pipeline, or through every second one, from the first or from the second on.
-enum class Pipelines { all, odd, even };
-void checkSameImageThrough(Pipelines which, const std::filesystem::path& sceneFile) {
+/// Of so many scenes the one of this number: each takes its share of the pipelines, and together they take
+/// all.
+struct Share {
+  std::size_t number = 0, scenes = 1;
+};
+void checkSameImageThrough(const Share& share, const std::filesystem::path& sceneFile) {
   const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
   if (!loaded) return;
   const Scene& scene = *loaded;
-  bool isOdd = false;
+  std::size_t number = 0;
   for (const auto& pipelineFile : filesIn("scenes/pipelines", ".pipeline")) {
     // As printed, a voxel is a running average in the order of the writes: no two runs have the same bits.
     if (pipelineFile.stem() == "thesis_cone_tracing") continue;
-    isOdd = !isOdd;
-    if (which != Pipelines::all && isOdd != (which == Pipelines::odd)) continue;
+    if (number++ % share.scenes != share.number % share.scenes) continue;
     const Pipeline text = withSmallMaps(pipelineFile);
     if (text.outputs.empty()) continue;  // voxelizers alone, below
     const RenderOptions options = smallOptions(text);
@@ -120,10 +122,6 @@ void checkSameImageThrough(Pipelines which, const std::filesystem::path& sceneFi
       if (one.refusal.empty() && other.refusal.empty()) checkSameOutputs(one.frame, other.frame);
     }
   }
-}
-
-void checkSameImage(const std::filesystem::path& sceneFile) {
-  checkSameImageThrough(Pipelines::all, sceneFile);
 }
 
 /// Scenes whose models lie beside them in the tree, or those that need models from elsewhere.
@@ -163,55 +161,65 @@ std::vector<std::filesystem::path> wellKnownScenes() {
 
 }  // namespace
 
+namespace {
+
+/// What passes may leave out in a scene: its traits, with kinds of lights in place of their numbers.
+std::string whatMayBeLeftOut(const SceneTraits& traits) {
+  std::string kind;
+  for (const bool has :
+       {traits.triangles, traits.textures, traits.masks, traits.glossy, traits.emission, traits.environment,
+        traits.medium, traits.particles, traits.movingGeometry, traits.movingCamera,
+        traits.directionalLights > 0, traits.pointLights > 0, traits.spotLights > 0})
+    kind += has ? '1' : '0';
+  return kind;
+}
+
+/// Scenes made here from which the same may be left out share the pipelines: each pipeline meets each such
+/// kind of scene once.
+std::vector<std::pair<std::filesystem::path, Share>> scenesMadeHere() {
+  std::map<std::string, std::vector<std::filesystem::path>> kinds;
+  for (const auto& file : scenes(true))
+    kinds[whatMayBeLeftOut(SceneTraits::of(loadScene(file)))].push_back(file);
+  std::vector<std::pair<std::filesystem::path, Share>> all;
+  for (const auto& [kind, files] : kinds)
+    for (std::size_t i = 0; i < files.size(); ++i) all.push_back({files[i], {i, files.size()}});
+  return all;
+}
+
+/// Large models add sizes, not kinds: each takes a quarter of the pipelines, and each pipeline meets several
+/// of them.
+constexpr std::size_t kQuarters = 4;
+
+}  // namespace
+
 // Parts are cases of their own, which processes share between them.
 #define MADE_HERE(part)                                                                                   \
   TEST_CASE("leaving out passes and variants gives the bit-identical image on scenes made here " #part) { \
-    REQUIRE(scenes(true).size() >= 6);                                                                    \
-    checkPart(scenes(true), part, 3, checkSameImage);                                                     \
+    const auto all = scenesMadeHere();                                                                    \
+    REQUIRE(all.size() >= 6);                                                                             \
+    for (std::size_t i = (part)-1; i < all.size(); i += 4)                                                \
+      checkSameImageThrough(all[i].second, all[i].first);                                                 \
   }
 MADE_HERE(1)
 MADE_HERE(2)
 MADE_HERE(3)
-
-namespace {
-
-/// The two largest scenes are one model, and share the pipelines between them.
-const std::map<std::string, Pipelines> kHalves{{"sponza_crytek", Pipelines::odd},
-                                               {"sponza_thesis", Pipelines::even}};
-
-/// A sixteenth of the scenes with well-known models and their pipelines: large models take most of the time,
-/// so that each of eight groups of scenes has one of them, and goes through half of the pipelines.
-void checkWellKnown(std::size_t part) {
-  constexpr std::size_t kGroups = 8;
-  checkPart(wellKnownScenes(), (part + 1) / 2, kGroups, [part](const std::filesystem::path& file) {
-    const Pipelines which = part % 2 == 1 ? Pipelines::odd : Pipelines::even;
-    const auto half = kHalves.find(file.stem().string());
-    if (half == kHalves.end() || half->second == which) checkSameImageThrough(which, file);
-  });
-}
-
-}  // namespace
+MADE_HERE(4)
 
 #define WELL_KNOWN(part)                                                                                   \
   TEST_CASE("leaving out passes and variants gives the bit-identical image on well-known models " #part) { \
-    checkWellKnown(part);                                                                                  \
+    const auto all = wellKnownScenes();                                                                    \
+    for (std::size_t i = (part)-1; i < all.size(); i += 4)                                                 \
+      checkSameImageThrough({i / 4 + (part), kQuarters}, all[i]);                                          \
   }
 WELL_KNOWN(1)
 WELL_KNOWN(2)
 WELL_KNOWN(3)
 WELL_KNOWN(4)
-WELL_KNOWN(5)
-WELL_KNOWN(6)
-WELL_KNOWN(7)
-WELL_KNOWN(8)
-WELL_KNOWN(9)
-WELL_KNOWN(10)
-WELL_KNOWN(11)
-WELL_KNOWN(12)
-WELL_KNOWN(13)
-WELL_KNOWN(14)
-WELL_KNOWN(15)
-WELL_KNOWN(16)
+
+TEST_CASE("leaving out gives the bit-identical image on every scene through every pipeline", "[.][slow]") {
+  for (const bool own : {true, false})
+    for (const auto& file : scenes(own)) checkSameImageThrough({}, file);
+}
 
 namespace {
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool exists(const fs::path& path) {
+bool isThere(const fs::path& path) {
   std::error_code error;
   return fs::exists(path, error);
 }
@@ -25,7 +25,7 @@ bool exists(const fs::path& path) {
 /// The format of a folder, by the files in it.
 std::string formatOf(const fs::path& folder) {
   for (const char* name : {"associations.txt", "associate.txt", "associated.txt", "rgb.txt"})
-    if (exists(folder / name)) return "tum";
+    if (isThere(folder / name)) return "tum";
   std::error_code error;
   bool hasLog = false, hasDepthTexts = false;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -37,8 +37,8 @@ std::string formatOf(const fs::path& folder) {
         fmt::format("{}: texts (.depth) of distances along rays, as ICL-NUIM publishes them beside its TUM "
                     "form; expected that form, whose PNG files hold depths along z",
                     folder.string()));
-  if (hasLog && exists(folder / "depth")) return "redwood";
-  if (exists(folder / "pose") || !numberedFiles(folder, {".depth.png"}).empty()) return "frames";
+  if (hasLog && isThere(folder / "depth")) return "redwood";
+  if (isThere(folder / "pose") || !numberedFiles(folder, {".depth.png"}).empty()) return "frames";
   throw Error(fmt::format(
       "{}: holds no capture; expected rgb.txt, depth.txt and groundtruth.txt (tum), *.depth.png, *.color.* and "
       "*.pose.txt or folders color, depth and pose (frames), or folders color and depth with a .log (redwood)",

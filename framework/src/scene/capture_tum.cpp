@@ -26,7 +26,7 @@ struct TimedPose {
   CapturePose pose;
 };
 
-bool exists(const fs::path& path) {
+bool isThere(const fs::path& path) {
   std::error_code error;
   return fs::exists(path, error);
 }
@@ -169,7 +169,7 @@ CaptureListing listTum(const fs::path& folder) {
   listing.hasTimes = true;
   const fs::path poses = folder / "groundtruth.txt";
   for (const char* name : {"associations.txt", "associate.txt", "associated.txt"}) {
-    if (!exists(folder / name)) continue;
+    if (!isThere(folder / name)) continue;
     listing.texts = {folder / name, poses};
     addAssociated(folder / name, folder, listing);
     break;
