@@ -20,8 +20,8 @@ fs::path projectHere(const std::string& name) {
   return here / name;
 }
 
-/// The folder that this program was built in, where find_package does not look; nothing if the program is
-/// installed.
+/// The folder that this program was built in, in which find_package finds no Lumivox; nothing if the program
+/// is installed.
 std::optional<fs::path> buildFolder() {
   const auto program = programFile();
   if (!program) return std::nullopt;

@@ -129,7 +129,7 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
                                  double secondsLeft) {
     const std::string what = fmt::format("{}, {}: {}", std::filesystem::path(cell.pipeline).stem().string(),
                                          cell.name, stressValueText(cell));
-    // Stable cells appear only in the line of progress.
+    // Stable and inapplicable cells appear only in the line of progress, unless --verbose is given.
     const bool well = cell.outcome == StressOutcome::stable || cell.outcome == StressOutcome::notApplicable;
     logMessage(well ? LogLevel::details : LogLevel::information, what);
     progress.show(done, total, secondsLeft, what);

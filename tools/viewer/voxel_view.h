@@ -25,7 +25,7 @@ struct VoxelPicture {
 /// The names of a kind's fields that can be drawn, and kLobes; empty: none.
 std::vector<std::string> drawnFields(const PortKind& kind);
 
-/// Draws on the calling thread's device.
+/// Draws on a device; used on that device's thread only.
 class VoxelView {
  public:
   explicit VoxelView(gpu::Device& device) : shaders_(device) {}
