@@ -1,4 +1,4 @@
-// The middle of repeated measurements and how far they lie apart.
+// Median and quartiles of repeated measurements.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace lumivox {
 struct Spread {
   double lower, median, upper;
 };
-/// Of one value at least.
+/// Needs at least one value.
 inline Spread spreadOf(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();

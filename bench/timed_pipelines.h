@@ -1,4 +1,4 @@
-// Times of pipelines' passes, taken in turns, and how they are told.
+// Measures the passes of pipelines in turns, and prints the figures.
 #pragma once
 
 #include <fmt/format.h>
@@ -53,7 +53,7 @@ class Bench {
   PipelineExecutor& executor() { return *executor_; }
   void keep(const std::string& pass, const std::string& port) { executor_->keepOutput(pass, port); }
 
-  /// Of the passes that run at this time.
+  /// The times of the passes in a frame at this time; 0 for one that did not run.
   Times at(double time) {
     executor_->render(time, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
     Times times;
@@ -66,7 +66,7 @@ class Bench {
     executor_->invalidate();
     return at(time);
   }
-  /// So many, after one of warm-up.
+  /// The times of Machine::repeats frames after one of warm-up, in which all passes run.
   std::vector<Times> severalAfresh() {
     afresh();
     std::vector<Times> result;
@@ -102,7 +102,7 @@ inline std::vector<double> ratios(const std::vector<Times>& frames, const std::v
   return result;
 }
 
-/// Measured at each number of elements, with exponents at the end.
+/// Figures measured at several numbers of elements; print() fits the exponents of their power laws.
 class Growth {
  public:
   void add(const std::string& what, double elements, double value) {
@@ -122,7 +122,7 @@ class Growth {
   std::map<std::string, std::vector<PowerLawPoint>> points_;
 };
 
-/// The number of repeats that a program is given.
+/// The number of repeats on a program's command line.
 inline int repeatsOf(const char* text, std::string_view program) {
   const std::string_view word = text;
   int number = 0;

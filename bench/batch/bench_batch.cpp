@@ -1,7 +1,8 @@
-// What a batch of six points of voxel cone tracing holds on the device, and what it would hold if each had
-// all for itself; their images and times with shared memory and without, in turns. usage: bench_batch
-// [--quick | SCENE [SIZE [REPEATS [FOLDER OF MODELS]]]] (default: scenes/cornell.scene 128 11), from the
-// project's folder. Exit code 1: images differ. --quick: seconds of work, whose times mean nothing.
+// Device memory of a batch of six points of voxel cone tracing, and the memory that they would need without
+// sharing; their images and times with and without sharing, taken in turns.
+// usage: bench_batch [--quick | SCENE [SIZE [REPEATS [FOLDER OF MODELS]]]] (default: scenes/cornell.scene 128
+// 11), from the project's folder. Exit code 1: images differ. --quick: seconds of work, whose times mean
+// nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ double median(std::vector<double> values) {
 
 struct Point {
   std::string resolution, cones;
-  /// With waiting resources of its own, and with those of the batch.
+  /// Executors with a resource pool of their own, and with the pool of the batch.
   std::unique_ptr<PipelineExecutor> apart, together;
   std::vector<double> msApart{}, msTogether{}, ratios{};
 };
@@ -83,7 +84,7 @@ int main(int argc, char** argv) {
           executor.invalidate();
           return executor.render(0.0, 0, repeat < 0 ? Images::yes : Images::no);
         };
-        // Neither always comes first.
+        // The two take turns at coming first.
         FrameResult apart, together;
         if (repeat % 2 == 0) {
           apart = frame(*point.apart);

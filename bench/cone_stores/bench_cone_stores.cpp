@@ -1,9 +1,8 @@
-// The stores of voxel cone tracing beside each other: error, time and bytes on scenes that some were tuned on
-// and some were not. From the project's folder:
+// Compares the stores of voxel cone tracing: error, time and bytes on scenes, of which some were used for
+// tuning. From the project's folder:
 //   bench_cone_stores            measures and prints the tables
-//   bench_cone_stores --write    measures, keeps the figures in docs/benchmarks/cone_stores.json, and writes
-//   the
-//                                tables in docs/cones.md anew
+//   bench_cone_stores --write    measures, keeps the figures in docs/benchmarks/cone_stores.json, and
+//                                rewrites the tables in docs/cones.md
 //   bench_cone_stores --cards    writes the tables from the kept figures
 //   bench_cone_stores --check    reports whether they differ from the kept figures
 //   bench_cone_stores --quick    seconds of work, whose figures mean nothing, for the tests
@@ -43,9 +42,9 @@ constexpr const char* kEnd = "<!-- end -->";
 
 struct Store {
   const char *name, *pipeline;
-  const char *pass, *port;                                  ///< the output that holds it, filtered
-  const char *besidePass = nullptr, *besidePort = nullptr;  ///< and what belongs to it
-  int levels = 1;  ///< of so many voxels around the camera, the coarsest around the scene
+  const char *pass, *port;                                  ///< the output that holds the filtered store
+  const char *besidePass = nullptr, *besidePort = nullptr;  ///< a second output of the store
+  int levels = 1;                                           ///< of a clipmap; the coarsest covers the scene
 };
 constexpr Store kStores[] = {{"one grid", "voxel_cone_tracing", "grid", "mips"},
                              {"with lobes", "voxel_cone_tracing_lobes", "grid", "mips", "sides", "lobes"},
@@ -78,7 +77,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// RMSE over that of leaving the light out, without the noise of the reference, and the ratio of means.
+/// RMSE divided by that of leaving the light out, both without the noise of the reference; and the mean
+/// divided by the reference's.
 std::pair<double, double> judge(const ImageBuffer& image, const LayeredImage& reference) {
   const ImageBuffer& truth = reference.layers.at("one_bounce_diffuse");
   const ImageBuffer& variance = reference.layers.at("one_bounce_diffuse.variance");
@@ -96,7 +96,7 @@ std::pair<double, double> judge(const ImageBuffer& image, const LayeredImage& re
   return {std::sqrt(std::max(difference - noise, 0.0) / (none - noise)), sum / trueSum};
 }
 
-/// All stores in turns on one scene.
+/// Measures all stores in turns on one scene.
 void measure(gpu::Device& device, TechniqueSet& techniques, const std::string& name, const Size& size,
              Json& results) {
   const Scene scene = loadScene("scenes/" + name + ".scene");
@@ -106,7 +106,7 @@ void measure(gpu::Device& device, TechniqueSet& techniques, const std::string& n
     RenderOptions options;
     options.width = options.height = size.pixels;
     options.wanted = {"indirect_diffuse"};
-    // Its finest voxels, those around the camera, are as wide as those of the other stores.
+    // The finest voxels of a clipmap, around the camera, are as wide as those of the other stores.
     std::vector<std::string> settings{fmt::format("resolution={}", size.voxels >> (store.levels - 1))};
     if (store.levels > 1) settings.push_back(fmt::format("levels={}", store.levels));
     options.parameters = pipeline.settings(settings);
@@ -183,7 +183,7 @@ std::string table(const Json& results, const std::string& what, Cell cell) {
   return text + "\n";
 }
 
-/// Everything between the marks of the guide.
+/// The tables that go between the marks of the guide.
 std::string tables(const Json& kept) {
   const Json& results = kept.at("results");
   return fmt::format("\nMeasured on {}, {}, {} voxels along the longest side, {} x {} pixels.\n\n",

@@ -1,8 +1,8 @@
-// The cost of a frame on the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices]
-// [repeats], or bench_gpu --quick
+// The cost of a frame on the host: draw calls, and the bounds of moving objects.
+// usage: bench_gpu [draws] [vertices] [repeats], or bench_gpu --quick
 //
-// The draws are those of the g-buffer: one for each part of the scene, each of one triangle that covers no
-// more than a pixel, so that the host has most of the work.
+// The draws are those of the g-buffer, one per part of the scene. Each part is one triangle that covers at
+// most a pixel, so that the host does most of the work.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// So many parts of one triangle each, spread over a cube.
+/// A scene of parts with one triangle each, spread along a curve through the unit cube.
 Scene partsScene(int parts) {
   Scene scene;
   scene.name = "parts";
@@ -57,12 +57,12 @@ Scene partsScene(int parts) {
   return scene;
 }
 
-/// A turning sphere of so many vertices.
+/// A turning sphere with this many vertices.
 Scene movingScene(int vertices) {
   Scene scene = partsScene(1);
   scene.positions.clear();
-  // Patch after patch, as models come that were ordered for caches: tiles of 16 x 16 of a square folded to an
-  // octahedron and blown up.
+  // Vertices in tiles of 16 x 16, an order as in models that are optimised for vertex caches. The square of
+  // tiles is folded to an octahedron, which is projected onto the sphere.
   const int tiles = std::max(1, static_cast<int>(std::sqrt(vertices / 256.0)));
   for (int i = 0; i < vertices; ++i) {
     const int tile = i / 256 % (tiles * tiles), within = i % 256;

@@ -1,9 +1,10 @@
-// What each choice of imperfect volumes costs, on `cornell` and `arcade`: voxels that are read over all,
-// march without branches over early exit, every voxel of a ray over steps, openness over a bounce, six
-// neighbours over eight, half floats over floats; how the time of a frame is shared by picture and volume;
-// and light that propagates from cell to cell over light that rays gather. Times in turns within each frame,
-// medians and quartiles of ratios. usage: bench_imperfect_volumes
-// [--quick | SIZE [REPEATS [RAYS [VOXELS]...]]] (default: 256 5 100 32 64 128), from the project's folder.
+// Time ratios of the choices of imperfect volumes, on `cornell` and `arcade`: only voxels that are read over
+// all, branchless march over early exit, every voxel of a ray over steps, openness over a bounce, six
+// neighbours over eight, half floats over floats. Also the share of a frame's time that scales with pixels,
+// and light that propagates from cell to cell over light that rays gather. Times are taken in turns within
+// each frame; printed are medians and quartiles of ratios.
+// usage: bench_imperfect_volumes [--quick | SIZE [REPEATS [RAYS [VOXELS]...]]] (default: 256 5 100 32 64
+// 128), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ std::string inWords(const Spread& spread) {
 
 using Times = std::map<std::string, double>;  ///< ms by pass
 
-/// So many frames after one of warm-up, in each of which every pass runs.
+/// The times of `repeats` frames after one of warm-up. Every pass runs in each frame.
 std::vector<Times> timesOf(PipelineExecutor& executor, int repeats) {
   std::vector<Times> result;
   for (int repeat = -1; repeat < repeats; ++repeat) {
@@ -47,7 +48,7 @@ std::vector<Times> timesOf(PipelineExecutor& executor, int repeats) {
   return result;
 }
 
-/// Times of some passes, over those of others, in each frame.
+/// The time of some passes divided by that of others, in each frame.
 Spread ratioOf(const std::vector<Times>& frames, const std::vector<std::string>& passes,
                const std::vector<std::string>& over) {
   std::vector<double> ratios;
@@ -65,7 +66,7 @@ double medianOf(const std::vector<Times>& frames, const std::string& pass) {
   return spreadOf(values).median;
 }
 
-// Every choice is a pass of its own beside the committed pipeline's, so that all are timed in each frame.
+// Every choice is an additional pass beside the committed pipeline's, so that all are timed in each frame.
 constexpr const char* kChoices = R"(
 pipeline "bench" {
   param resolution 64 in 1..512
@@ -95,7 +96,7 @@ constexpr Choice kMarches[] = {
     {"march_eight", "inject", "gbuffer gbuffer  voxels eight"},
     {"march_half", "inject_half", "gbuffer gbuffer"},
 };
-/// Of `march_all`, which suits all neighbours.
+/// Gathers from `march_all`, whose voxels suffice for either choice of neighbours.
 constexpr const char* kGathers[] = {"six", "eight"};
 
 void compareChoices(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, const char* name,
@@ -137,7 +138,7 @@ void compareChoices(gpu::Device& device, TechniqueSet& techniques, const Scene& 
   row("openness, over a bounce", {"occlude"}, {"march"});
   row("six over eight, gather", {"six"}, {"eight"});
   row("six over eight, march", {"march"}, {"march_eight"});
-  // Sec. 3.2: what is seen was lit already.
+  // Sec. 3.2: visible surfaces were lit already by the direct light.
   row("light brought along, inject", {"inject_lit"}, {"inject"});
   row("the same with reprojection", {"voxels_lit", "inject_lit"}, {"voxels", "inject"});
   row("the same, cone tracing", {"voxels_lit", "cones_lit"}, {"voxels", "cones"});
@@ -145,8 +146,8 @@ void compareChoices(gpu::Device& device, TechniqueSet& techniques, const Scene& 
   std::fflush(stdout);
 }
 
-/// How the time of a frame of the committed pipeline is shared by picture and volume: lines through two
-/// pictures tell what scales with pixels.
+/// The share of a frame's time that scales with pixels, for the committed pipeline: the slope of a line
+/// through the times at two picture sizes.
 void comparePictures(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, const char* name,
                      const std::vector<int>& sizes, int repeats, int rays, int resolution) {
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/imperfect_volumes.pipeline");
@@ -173,7 +174,7 @@ void comparePictures(gpu::Device& device, TechniqueSet& techniques, const Scene&
                resolution, sizes[i], spreadOf(whole[i]).median, spreadOf(march[i]).median,
                inWords(spreadOf(gather[i])));
     if (i > 0) {
-      // Of a line through this picture and the next smaller one.
+      // From a line through this picture size and the next smaller one.
       std::vector<double> shares;
       const double pixels = double(sizes[i]) * sizes[i], before = double(sizes[i - 1]) * sizes[i - 1];
       for (std::size_t r = 0; r < whole[i].size(); ++r)
@@ -185,8 +186,8 @@ void comparePictures(gpu::Device& device, TechniqueSet& techniques, const Scene&
   }
 }
 
-/// The same points, propagated and marched (Sec. 4.1), both committed pipelines with their own settings: time
-/// of what is not the same in both.
+/// Light from the same points, propagated and marched (Sec. 4.1), by the committed pipelines with their own
+/// settings: times of the passes that differ.
 void comparePropagation(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, const char* name,
                         int size, int repeats, const std::vector<std::string>& settings) {
   RenderOptions options;
@@ -244,7 +245,7 @@ int main(int argc, char** argv) {
     }
     const std::vector<int> sizes = quick ? std::vector<int>{8, 16} : std::vector<int>{64, 128, 256, 512};
     for (const int resolution : voxels) {
-      if (resolution > 64) continue;  // there the march leads
+      if (resolution > 64) continue;  // at higher resolutions the march dominates
       comparePictures(device, techniques, cornell, "cornell", sizes, repeats, rays, resolution);
       comparePictures(device, techniques, arcade, "arcade", sizes, repeats, rays, resolution);
     }

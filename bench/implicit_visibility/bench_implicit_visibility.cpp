@@ -1,7 +1,8 @@
-// How implicit visibility spends its time: growth with elements, the hierarchy over all pairs, two threads
-// over one, what a moving object and a moving camera cost, `fill centre` over `one`, a bounce beside a plain
-// loop on the processor, and lists of lights over all bins. Ratios of times taken in turns, medians and
-// quartiles. usage: bench_implicit_visibility [--quick | REPEATS] (default: 5), from the project's folder.
+// Times of implicit visibility: growth with elements, the hierarchy over all pairs, two threads over one, the
+// cost of a moving object and of a moving camera, `fill centre` over `one`, a bounce over a plain loop on the
+// CPU, and lists of lights over all bins. Printed are medians and quartiles of ratios of times that were
+// taken in turns.
+// usage: bench_implicit_visibility [--quick | REPEATS] (default: 5), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -27,7 +28,7 @@ namespace {
 using namespace lumivox;
 using namespace lumivox::implicit_visibility;
 
-// Links alone: by the hierarchy as it is by default, with one bin an element, and of all pairs.
+// Passes up to the links: by the hierarchy with its defaults, with one bin per element, and from all pairs.
 constexpr const char* kLinks = R"(
 pipeline "links" {
   param elements 4096 in 16..1048576
@@ -41,9 +42,9 @@ pipeline "links" {
 }
 )";
 
-/// Links that are seen anew from leaves: those of each leaf and of all nodes above it.
+/// The number of links that all leaves rasterise: of each leaf those of itself and of all nodes above it.
 double rasterised(const ElementTree& tree, const ElementLinks& pairs) {
-  std::vector<double> ofNode(tree.nodeCount, 0.0);  // with those above it
+  std::vector<double> ofNode(tree.nodeCount, 0.0);  // including those of the nodes above it
   double sum = 0.0;
   for (std::uint32_t node = tree.nodeCount; node-- > 0;) {
     const std::uint32_t parent = tree.parents[node];
@@ -59,7 +60,7 @@ std::vector<std::string> settingsOf(int elements, int bins) {
   return {fmt::format("elements={}", elements), fmt::format("bins={}", bins)};
 }
 
-/// Links, pairs, time and bytes over elements.
+/// Growth of links, pairs, time and bytes with the number of elements.
 void growth(Machine& machine, const Scene& scene, const std::vector<int>& elements, int bins, bool allPairs) {
   const Pipeline pipeline = Pipeline::parse(kLinks, "bench.pipeline");
   fmt::print("growth, 6 x {} x {} bins, {}\n", bins, bins, allPairs ? "all pairs" : "hierarchy");
@@ -142,7 +143,7 @@ void incremental(Machine& machine, const Scene& scene, int elements, int bins) {
       inWords(shares));
 }
 
-/// As published: what is made once beside what every frame does (Table 1).
+/// As published in Table 1: times of preprocessing and of the work in every frame.
 void madeOnce(Machine& machine, Scene scene, int bins) {
   for (Object& object : scene.objects) object.motion = RigidMotion{.angularSpeed = 0.5};
   scene.hash = {};
@@ -182,8 +183,8 @@ void cameraMove(Machine& machine, Scene scene, const std::vector<std::string>& s
       inWords(shares));
 }
 
-/// One bounce on the processor, over the links and the radiance that the passes left: leaf by leaf, on one
-/// thread. Returns the ms, and the mean irradiance of the fronts so that the work is not left out.
+/// One bounce on the CPU over the links and the radiance of the passes, leaf by leaf on one thread. Returns
+/// the ms and the mean irradiance of the fronts, without which the compiler could remove the work.
 std::pair<double, double> plainGather(const SurfaceElements& elements, const ElementLinks& links,
                                       const std::vector<float>& radiance) {
   const ElementTree& tree = *elements.tree;

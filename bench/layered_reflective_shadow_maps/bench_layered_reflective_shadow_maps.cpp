@@ -1,8 +1,8 @@
-// Layered reflective shadow maps beside cone tracing through a dense grid of radiance, in the Cornell box:
-// bytes of what cones read, at 256^3 under one sun; and time and bytes under 1 to 16 spots, with the number
-// from which on cone tracing is cheaper (thesis Gomes 2015, Sec. 3.3 and 3.6, names this weakness). Times in
-// turns, medians and quartiles of ratios. usage: bench_layered_reflective_shadow_maps [--quick | REPEATS]
-// (default: 7), from the project's folder.
+// Layered reflective shadow maps against cone tracing through a dense grid of radiance, in the Cornell box:
+// bytes that cones read, at 256^3 under one sun, and time and bytes under 1 to 16 spots. The ratios show from
+// how many spots on cone tracing is cheaper, a weakness that the thesis names (Gomes 2015, Sec. 3.3 and 3.6).
+// Times are taken in turns; printed are medians and quartiles of ratios.
+// usage: bench_layered_reflective_shadow_maps [--quick | REPEATS] (default: 7), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <exception>
 #include <glm/glm.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace lumivox;
 
-/// The box without its lamp, under so many spots in a row below its ceiling; or, of none, under a sun.
+/// The box without its lamp, under a row of spots below its ceiling or, for 0 spots, under a sun.
 Scene cornellUnder(int spots) {
   Scene scene = loadScene("scenes/cornell.scene");
   for (Material& material : scene.materials) material.emission = glm::vec3(0.0f);
@@ -40,7 +40,7 @@ std::uint64_t bytesOf(const PipelineExecutor& executor, const char* pass, const 
   std::uint64_t bytes = 0;
   const PortContents contents = executor.output(pass, port)->contents();
   for (const PortContents::Resource& resource : contents.resources()) {
-    // Lights and views are those of the shadow maps, which every pipeline has.
+    // Lights and views come from the shadow maps, which every pipeline has.
     if (resource.what->name == "lights" || resource.what->name == "views") continue;
     if (resource.texture) bytes += resource.texture->sizeBytes();
     if (resource.buffer) bytes += resource.buffer->sizeBytes();
@@ -48,7 +48,7 @@ std::uint64_t bytesOf(const PipelineExecutor& executor, const char* pass, const 
   return bytes;
 }
 
-/// Both pipelines on a scene, which outlives them.
+/// Both pipelines on a scene, which must outlive them.
 class Pair {
  public:
   Pair(Machine& machine, const Scene& scene, int resolution, int size)
@@ -60,7 +60,7 @@ class Pair {
     layered_.keep("occlusion", "levels");
     grid_.keep("grid", "mips");
   }
-  /// Of the frame's indirect light, ms.
+  /// ms of the frame's indirect light.
   double ofLayered() {
     return sumOf(layered_.afresh(), {"average", "occlusion", "lights", "layers", "gather", "smooth"});
   }

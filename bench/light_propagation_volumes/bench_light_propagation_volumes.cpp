@@ -1,6 +1,6 @@
-// Propagation in two grids of 32^3 cells over eight iterations: the folded shader beside the one in the
-// structure of thesis 004 Listing 4.32, in turns, with the difference of their results; and both injections
-// into one grid around a closed room, with the memory that each takes. Prints medians.
+// Propagation in two grids of 32^3 cells over eight iterations: the folded shader against one with the
+// structure of Listing 4.32 of thesis 004, in turns, with the difference of their results. Also both
+// injections into a grid around a closed room, with the memory of each. Prints medians.
 // usage: bench_light_propagation_volumes [--quick] [--repeats N] (default: 15 repeats; quick: 1). Exit code
 // 1: the results differ by more than rounding; 2: it could not run.
 #include <fmt/format.h>
@@ -29,9 +29,9 @@ using light_propagation_volumes::OccludedFaces;
 constexpr int kCells = 32, kIterations = 8;
 constexpr int kRepeats = 15, kQuickRepeats = 1;
 constexpr float kAlbedo = 0.7f;     // of the room
-constexpr double kRounding = 1e-5;  // of the norm, as in the test of the two shaders
+constexpr double kRounding = 1e-5;  // relative to the norm, as in the test of the two shaders
 
-/// Lit surfaces: all cells of the three planes of a corner, everything else empty.
+/// Grids in which all cells of the three planes of a corner are lit and all others empty.
 std::pair<ShGrid, OccludedFaces> cornerOfLight(gpu::Device& device) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> flux(0.5f, 1.0f);
@@ -74,8 +74,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Both injections into a grid of so many cells a side. Whether each gives what the walls reflect, albedo 4
-/// pi I.
+/// Measures both injections into a grid of `resolution` cells a side. Returns whether each gives the flux
+/// that the walls reflect, albedo 4 pi I.
 bool injections(gpu::Device& device, TechniqueSet& techniques, int resolution, int repeats) {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(kAlbedo), true);
@@ -121,7 +121,7 @@ bool injections(gpu::Device& device, TechniqueSet& techniques, int resolution, i
   return complete;
 }
 
-/// Whether both give the same light.
+/// Measures both shaders. Returns whether they give the same light.
 bool propagation(gpu::Device& device, TechniqueSet& techniques, int repeats) {
   Scene scene;
   scene.cameras.emplace_back();

@@ -1,8 +1,9 @@
-// Rays through bits by each method: texels that they read and time, on `cornell`; and gathering at a quarter
-// of the pixels' sides against all pixels, and accumulated frames against single ones. Times in turns within
-// each frame, medians and quartiles of ratios. usage: bench_near_field_voxels [--quick | SIZE [REPEATS]]
-// (default: 128 7), from the project's folder. --quick: seconds of work, whose figures mean nothing, for the
-// tests
+// Rays through bits by each method on `cornell`: texel reads and time. Also gathering at a quarter of the
+// resolution along each side against all pixels, accumulated frames against single ones, and bits that are
+// updated for moving triangles against bits made anew. Times are taken in turns within each frame; printed
+// are medians and quartiles of ratios.
+// usage: bench_near_field_voxels [--quick | SIZE [REPEATS]] (default: 128 7), from the project's folder.
+// --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ std::string inWords(const Spread& spread) {
 using Times = std::map<std::string, double>;  ///< ms by pass
 using Ratios = std::map<std::string, std::vector<double>>;
 
-/// So many frames after two of warm-up; `each` gets the times of every one.
+/// Renders `repeats` frames after two of warm-up; `each` gets the times of every one.
 template <class Each>
 FrameResult measure(PipelineExecutor& executor, int repeats, bool anew, Each&& each) {
   FrameResult last;
@@ -99,8 +100,8 @@ void compareMethods(gpu::Device& device, TechniqueSet& techniques, const Scene& 
   }
 }
 
-/// All pixels and one of 4 x 4, 16 rays each, both smoothed over 16 pixels: without that the noise of all
-/// pixels alone is a FLIP of 0.065 from 256 rays.
+/// Gathers at all pixels and at one of each 4 x 4, with 16 rays, both smoothed over 16 pixels. Without
+/// smoothing, the noise at all pixels alone gives a FLIP of 0.065 from 256 rays.
 void comparePixels(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, const char* name,
                    int size, int repeats, int resolution) {
   std::string text = kBegin;
@@ -130,7 +131,7 @@ void comparePixels(gpu::Device& device, TechniqueSet& techniques, const Scene& s
       name, inWords(spreadOf(ratios)), error.flipLdr, error.flip);
 }
 
-/// The gather of a frame that goes on with the one before, and of one that does not.
+/// The time of gather in accumulated frames over that in single ones.
 void compareFrames(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, int size, int repeats,
                    int resolution) {
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/near_field_voxels.pipeline");
@@ -150,7 +151,7 @@ void compareFrames(gpu::Device& device, TechniqueSet& techniques, const Scene& s
   fmt::print("a frame that accumulates over a single one: {}\n", inWords(spreadOf(ratios)));
 }
 
-/// A row of blocks of which the first fifth turns, or all of them.
+/// A lattice of 10 x 10 x 10 blocks, of which the first fifth turns, or all.
 Scene blocksThatTurn(bool all) {
   SceneBuilder builder;
   const int grey = builder.lambert(0.5f);
@@ -167,8 +168,8 @@ Scene blocksThatTurn(bool all) {
   return builder.scene;
 }
 
-/// Bits with their hierarchy in a frame in which a fifth of the triangles move, over those of the same list
-/// of which nothing is known to stand still.
+/// The time of the bits and their hierarchy in a frame in which a fifth of the triangles move, over that for
+/// the same blocks if all move.
 void compareMotion(gpu::Device& device, TechniqueSet& techniques, int repeats, int resolution) {
   const Scene part = blocksThatTurn(false), all = blocksThatTurn(true);
   std::string text = kBegin;

@@ -1,7 +1,7 @@
-// What the default point of each committed pipeline costs to measure, beside its frame: seconds over what is
-// allowed, 12 frames and a second, and its parts. Work is counted only with --work. usage: bench_point_cost
-// [--quick | [--work] [PIPELINE...]] (default: all that suit scenes/cornell.scene, at 128 x 128), from the
-// project's folder. --quick: seconds of work, whose figures mean nothing, for the tests.
+// The time to measure the default point of each committed pipeline: seconds, their parts, and their ratio to
+// the allowance of 12 frames and a second. Work is counted only with --work.
+// usage: bench_point_cost [--quick | [--work] [PIPELINE...]] (default: all that suit scenes/cornell.scene, at
+// 128 x 128), from the project's folder. --quick: seconds of work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ using namespace lumivox;
 using namespace lumivox::experiment;
 namespace fs = std::filesystem;
 
-/// A results store that is gone afterwards.
+/// A temporary folder for a results store.
 class Folder {
  public:
   Folder() : path_(fs::temp_directory_path() / fmt::format("lumivox_point_cost_{}", getpid())) {
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   try {
     ReportOptions options;
     options.openSweeps = false;
-    options.budgetSeconds = 1e9;  // within one, work is not counted
+    options.budgetSeconds = 1e9;  // within a budget, work is not counted
     std::vector<fs::path> files;
     for (int i = 1; i < argc; ++i) {
       const std::string_view word = argv[i];

@@ -1,4 +1,4 @@
-// Rays per second of the path tracer beside a bare Embree loop over the same rays on the same threads.
+// Rays per second of the path tracer, and of a bare Embree loop over the same rays on the same threads.
 // usage: bench_reference [--quick] [scene texts] (default: scenes/cornell.scene and scenes/arcade.scene below
 // the current directory). --quick: a second's work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
       const lumivox::Scene scene = lumivox::loadScene(file);
       for (const int threads : {1, 0}) {
         lumivox::ReferenceOptions options;
-        // Small, because every ray is kept in memory for the bare loop; with many samples, as references have
-        // them.
+        // Small images, since the bare loop needs every ray in memory; many samples per pixel, as in
+        // references.
         options.width = options.height = quick ? 16 : 64;
         options.samplesPerPixel = quick ? 4 : 64;
         options.threads = threads;

@@ -1,9 +1,9 @@
-// The results store with many runs: adding, reading, choosing, planning, merging, and how many of the stores
-// that a killed process leaves are whole. Medians and quartiles over repeats, in s.
+// The results store with many runs: adding, reading, filtering, planning and merging, as medians and
+// quartiles in s; and how many stores are damaged after their process was killed.
 // usage: bench_results_store [--quick | REPEATS [FOLDER]] (default: 5; FOLDER: where the stores lie and stay,
 // by default a new one that is removed), from the project's folder. --quick: seconds of work, whose figures
-// mean nothing, for the tests. Exit code 1: a store of a killed process lacks what it had been told is
-// stored.
+// mean nothing, for the tests. Exit code 1: the store of a killed process cannot be read or lacks a run that
+// add() had confirmed.
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -89,8 +89,8 @@ void measureMerging(const fs::path& folder, int stores, int repeats) {
       [&] { fs::remove(whole); });
 }
 
-/// Of so many processes, each killed at a moment of its own while it adds runs, those that left a store that
-/// cannot be read or lacks a run that add() had returned for.
+/// Kills `kills` processes at random moments while they add runs. Returns how many left a store that cannot
+/// be read or lacks a run for which add() had returned.
 int brokenByKills(const fs::path& folder, int kills) {
   const fs::path file = folder / "killed.sqlite";
   std::mt19937 random(1);
@@ -119,7 +119,7 @@ int brokenByKills(const fs::path& folder, int kills) {
     close(pipe[0]);
     told += static_cast<int>(stored);
     try {
-      // The last one may be there without word of it.
+      // The last run may be stored although its add() had not yet reported it.
       const std::size_t there = ResultsStore(file).runs().size();
       broken += there < stored || there > stored + 1;
     } catch (const Error& error) {
@@ -132,7 +132,7 @@ int brokenByKills(const fs::path& folder, int kills) {
   return broken;
 }
 
-/// A folder of its own, which goes with it.
+/// A temporary folder that the destructor removes.
 class Folder {
  public:
   Folder() {

@@ -1,5 +1,5 @@
-// Exporting a radiance grid, from the device to the closed file, beside OpenVDB alone writing the same sparse
-// grids, which it has in memory already. Both alternate in one run; medians.
+// Export of a radiance grid from the device to the closed file, against OpenVDB alone writing the same sparse
+// grids from memory. Both alternate in one run; printed are medians.
 // usage: bench_vdbexport [--quick | SCENE [RESOLUTION [REPEATS]]] (default: scenes/arcade.scene 256 9), in
 // the project's folder. --quick: a second's work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ int run(std::vector<std::string> arguments) {
   std::uint64_t deviceBytes = 0, activeVoxels = 0;
   glm::ivec3 size{0};
   for (int repeat = 0; repeat <= repeats; ++repeat) {
-    // The passes do not run again; the fields are new, so that each repeat downloads anew.
+    // The passes do not run again, but the fields are new, so that each repeat downloads them.
     std::vector<vdb::NamedField> fields = exporter.render(0.0, 0);
     device->finish();
     openvdb::GridCPtrVec grids;
@@ -76,7 +76,7 @@ int run(std::vector<std::string> arguments) {
         file.close();
       });
     };
-    // Whoever comes second finds the grids in the caches: they take turns.
+    // The second finds the grids in the caches, so they take turns at coming first.
     if (repeat % 2 == 0) writeTheirs();
     writeOurs();
     if (repeat % 2 == 1) writeTheirs();

@@ -1,7 +1,7 @@
-// What a frame costs in the window beside the same frame of `render`, in turns: from a turned camera to the
-// picture that is to be shown, with panels hidden and no reference. What the window draws with it lies on
-// another thread and is not counted. usage: bench_viewer [--quick | SIZE [REPEATS]] (default: 256 41), from
-// the project's folder. --quick: seconds of work, whose figures mean nothing, for the tests.
+// The time of a frame in the window against the same frame of `render`, in turns: from a camera turn to the
+// finished picture, with panels hidden and no reference. The window's drawing is not counted.
+// usage: bench_viewer [--quick | SIZE [REPEATS]] (default: 256 41), from the project's folder. --quick:
+// seconds of work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -29,7 +29,7 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The session of a window, and the sleep from which its workers wake it.
+/// The session of a window, with the wait from which its workers wake it.
 class Viewed {
  public:
   Viewed(const char* scene, const std::string& pipeline, int size)
@@ -52,7 +52,7 @@ class Viewed {
     frame();
   }
 
-  /// Until the frame of what was done is a picture.
+  /// Waits until the frame for the last statement is a picture.
   void frame() {
     const RenderedResult before = session_.rendered();
     for (session_.step(0.0); session_.rendered() == before; session_.step(0.0)) {

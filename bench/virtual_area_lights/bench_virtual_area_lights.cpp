@@ -1,9 +1,9 @@
-// How virtual area lights spend their time: sparse points over every light at every pixel, and over
-// reflective shadow maps of equal error; growth with points, lights and pixels; lights in one patch over
-// lights all over; the ways by which lights reach the points; points made once, and points that all move.
-// Ratios of times taken in turns, medians and quartiles. usage: bench_virtual_area_lights [--quick | REPEATS]
-// (default: 5), from the project's folder. --quick: seconds of work, whose figures mean nothing, for the
-// tests
+// Times of virtual area lights: sparse points against every light at every pixel, and against reflective
+// shadow maps of equal error; growth with points, lights and pixels; lights in one patch over lights
+// everywhere; the methods by which lights reach the points; points made once, and points that all move.
+// Printed are medians and quartiles of ratios of times that were taken in turns.
+// usage: bench_virtual_area_lights [--quick | REPEATS] (default: 5), from the project's folder. --quick:
+// seconds of work, whose figures mean nothing, for the tests
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +22,7 @@ namespace {
 using namespace lumivox;
 using namespace lumivox::virtual_area_lights;
 
-// Sparse points beside every light at every pixel, from the same lights.
+// Sparse points and every light at every pixel, from the same lights.
 constexpr const char* kBoth = R"(
 pipeline "sparse points and brute force" {
   param lights 4096 in 1..1048576
@@ -61,7 +61,8 @@ double rms(const ImageBuffer& image, const ImageBuffer* other = nullptr) {
   return std::sqrt(squared / static_cast<double>(image.values().size()));
 }
 
-/// Both lobes of sparse points over every light at every pixel, and how far the diffuse one is off.
+/// The time of every light at every pixel over that of sparse points, for both lobes, and the error of the
+/// diffuse one.
 void overBruteForce(Machine& machine, const Scene& scene, int lights, int points, int size) {
   const Pipeline pipeline = Pipeline::parse(kBoth, "bench.pipeline");
   Bench unoccluded(machine, scene, pipeline, settingsOf(lights, points, "occlusion=off"), size);
@@ -83,8 +84,8 @@ struct Setting {
   const char* occlusion;
 };
 
-/// What sparse points take for the error of reflective shadow maps. Of the frame without g-buffer and direct
-/// light, which both have.
+/// The time of sparse points over that of reflective shadow maps at several settings, with the errors of
+/// both. The g-buffer and direct light, which both have, do not count.
 void overReflectiveShadowMaps(Machine& machine, const Scene& scene, int size, int samples,
                               const std::vector<Setting>& settings) {
   ReferenceOptions options;
@@ -115,7 +116,7 @@ void overReflectiveShadowMaps(Machine& machine, const Scene& scene, int size, in
     std::vector<double> lightTimes, frames;
     bench.afresh(), other.afresh();
     for (int i = 0; i < machine.repeats; ++i) {
-      // Points are spread once: the second frame is that of a light that changes.
+      // Points are spread once, so the second frame measures a light that changes.
       const Times here = bench.afresh(), there = other.afresh();
       lightTimes.push_back(sumOf(here, {"map", "choose", "gather", "normalise", "occlude", "apply"}) /
                            sumOf(there, {"lights", "choose", "gather"}));
@@ -133,7 +134,7 @@ std::vector<double> msOf(const std::vector<Times>& frames, const std::string& pa
   return result;
 }
 
-/// Exponents of the passes' times over lights, or over points.
+/// Exponents of the passes' times in the number of lights, or of points.
 void growth(Machine& machine, const Scene& scene, const std::vector<int>& numbers, bool ofLights, int other) {
   fmt::print("growth with {}, {} {}\n", ofLights ? "lights" : "points", other,
              ofLights ? "points" : "lights");
@@ -148,7 +149,7 @@ void growth(Machine& machine, const Scene& scene, const std::vector<int>& number
   growth.print();
 }
 
-/// A frame of as many points as nobody wants, once.
+/// One frame with far more points than useful.
 void manyPoints(Machine& machine, const Scene& scene, int lights, int points) {
   Bench bench(machine, scene, Pipeline::parse(kBoth, "bench.pipeline"),
               settingsOf(lights, points, "occlusion=off"));
@@ -157,7 +158,7 @@ void manyPoints(Machine& machine, const Scene& scene, int lights, int points) {
       fmt::format("{:.0f}, {:.0f}, {:.0f}", frame.at("points"), frame.at("gather"), frame.at("apply")));
 }
 
-/// Times of passes with four times the pixels over those before.
+/// Times of the passes at four times the pixels over those at `size` x `size`.
 void growthWithPixels(Machine& machine, const Scene& scene, int size) {
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/virtual_area_lights.pipeline");
   Bench small(machine, scene, pipeline, {}, size), large(machine, scene, pipeline, {}, 2 * size);
@@ -171,7 +172,7 @@ void growthWithPixels(Machine& machine, const Scene& scene, int size) {
   for (const auto& [pass, values] : ratio) row("  " + pass, inWords(values));
 }
 
-/// A lamp that lights one patch over one that lights all.
+/// The time with a lamp that lights one patch over that with a lamp that lights everything.
 void patch(Machine& machine, Scene scene, int lights, int points) {
   const Pipeline pipeline = Pipeline::parse(kBoth, "bench.pipeline");
   for (Material& material : scene.materials) material.emission = glm::vec3(0.0f);
@@ -200,7 +201,7 @@ void patch(Machine& machine, Scene scene, int lights, int points) {
   row("  gather alone", inWords(gathered));
 }
 
-/// Lights through the cache over lights through the memory of a work group.
+/// The time of gather by method `cached` over that by method `shared` (memory of a work group).
 void methods(Machine& machine, const Scene& scene, int lights, int points) {
   const Pipeline pipeline = Pipeline::parse(kBoth, "bench.pipeline");
   Bench cached(machine, scene, pipeline, settingsOf(lights, points, "method=cached")),
@@ -212,7 +213,7 @@ void methods(Machine& machine, const Scene& scene, int lights, int points) {
   row(fmt::format("{} lights at {} points: cached over shared, gather", lights, points), inWords(ratio));
 }
 
-/// Points and their neighbours, made once.
+/// The time to make the points and their neighbours, once per scene.
 void pointsOnce(Machine& machine, const std::string& name, int points) {
   const Scene scene = loadScene("scenes/" + name + ".scene");
   std::vector<double> seconds;
@@ -226,7 +227,7 @@ void pointsOnce(Machine& machine, const std::string& name, int points) {
   row(fmt::format("{}: {} points and their neighbours, s", name, points), inWords(seconds));
 }
 
-/// What the host has to do in a frame in which every point moves, over the frame.
+/// The time of pass `points`, on the host, over the whole frame if every point moves.
 void allMoves(Machine& machine, Scene scene, const std::vector<std::string>& settings, int size) {
   for (Object& object : scene.objects)
     if (!object.sequence) object.motion = RigidMotion{.angularSpeed = 0.5};

@@ -1,7 +1,7 @@
-// Smoke at half and at full resolution, and light depths in a volume or by marching: medians of the passes'
-// times, in turn in one run, beside the thesis' (Gomes 2015, Table 2). usage: bench_volumetric_smoke
-// [--quick | SIZE [REPEATS]] (default: 256 11), from the project's folder. --quick: seconds of work, whose
-// figures mean nothing, for the tests
+// Smoke at half and at full resolution, with optical depths to the light from a volume or by marching:
+// medians of the passes' times, taken in turns in one run, beside those of the thesis (Gomes 2015, Table 2).
+// usage: bench_volumetric_smoke [--quick | SIZE [REPEATS]] (default: 256 11), from the project's folder.
+// --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-// The gather of our dense grid beside Listings 4.11 to 4.13 of the thesis (Gomes 2015) as printed: `arcade`,
-// five diffuse cones and a glossy one, 128 voxels. Times in turns within each frame, medians and quartiles;
-// errors against the path-traced reference. usage: bench_voxel_cone_tracing [--quick | SIZE [REPEATS
-// [NAME=VALUE ...]]] (default: 512 11), from the project's folder. Values are parameters of
-// scenes/reproductions/004_gather.pipeline for a row of their own. --quick: seconds of work, whose figures
-// mean nothing, for the tests
+// The gather of our dense grid against Listings 4.11 to 4.13 of the thesis (Gomes 2015) as printed: `arcade`,
+// five diffuse cones and a glossy one, 128 voxels. Times are taken in turns within each frame, as medians and
+// quartiles; errors are against the path-traced reference.
+// usage: bench_voxel_cone_tracing [--quick | SIZE [REPEATS [NAME=VALUE ...]]] (default: 512 11), from the
+// project's folder. NAME=VALUE are parameters of scenes/reproductions/004_gather.pipeline for an additional
+// row. --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,19 +27,19 @@ namespace {
 
 using namespace lumivox;
 
-/// Ours with some settings; the printed gather has none, and is timed beside each of them.
+/// Our gather with some settings; the printed gather, which has none, is timed together with each.
 struct Row {
   std::string name;
   std::vector<std::string> assignments;
   std::unique_ptr<PipelineExecutor> executor;
   std::map<std::string, std::vector<double>> times;  ///< ms by pass
-  std::vector<double> ratios;                        ///< of ours to the printed one in the same frame
+  std::vector<double> ratios;                        ///< ours over the printed one in the same frame
   FrameResult last;
 };
 
 struct Judged {
-  double error;  ///< RMSE over that of leaving this light out, without the noise of the reference
-  double mean;   ///< over the reference's
+  double error;  ///< RMSE over that of leaving this light out, both without the reference's noise
+  double mean;   ///< divided by the reference's mean
 };
 Judged judge(const ImageBuffer& image, const LayeredImage& reference, const std::string& layer) {
   const ImageBuffer& truth = reference.layers.at(layer);

@@ -1,6 +1,6 @@
-// Paths through bits: light carried back over stored surfaces, as published, over light added as it is met,
-// in time and bytes; and the path tracer of the reference over paths through bits, at as many samples and at
-// equal error, on `cornell`. Times in turns, medians and quartiles of ratios.
+// Paths through bits on `cornell`: light carried back over stored surfaces, as published, over light added as
+// it is met, in time and bytes; and the path tracer of the reference over paths through bits, at equal
+// samples and at equal error. Times are taken in turns; printed are medians and quartiles of ratios.
 // usage: bench_voxel_path_tracing [--quick | REPEATS] (default: 7), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <algorithm>
@@ -27,7 +27,7 @@ Pipeline ofOrder(const std::string& order) {
   return Pipeline::parse(text, kPipeline);
 }
 
-/// Of indirect diffuse light, without the reference's own noise.
+/// RMS error of indirect diffuse light, without the reference's noise.
 double errorOf(const ImageBuffer& image, const LayeredImage& truth) {
   const ImageError error =
       compare(image, truth.layers.at("bounces_2_diffuse"), truth.layers.at("bounces_2_diffuse.variance"));
@@ -56,7 +56,7 @@ void compareOrders(Machine& machine, const Scene& scene, int side, const std::ve
       if (repeat >= 0) ratios.push_back(ofBackward / ofForward);
     }
     row(fmt::format("order backward over forward, time, {} bounces", count), inWords(ratios));
-    // Textures of four floats a pixel: three, or four a bounce and two.
+    // Textures of four floats per pixel: three forward; backward, four per bounce and two more.
     row(fmt::format("order backward over forward, bytes of paths, {} bounces", count),
         fmt::format("{:.3g}", (4.0 * count + 2.0) / 3.0));
   }
@@ -84,7 +84,7 @@ void comparePathTracer(Machine& machine, const Scene& scene, int side, int sampl
     const double error = errorOf(frame.outputs.at("indirect_diffuse"), truth),
                  tracersError = errorOf(traced.layers.at("bounces_2_diffuse"), truth);
     equalSamples.push_back(ofTracer / ofPaths);
-    // The tracer's error is noise alone, which falls as the root of its time.
+    // The tracer's error is noise alone, which falls with the square root of its time.
     equalError.push_back(ofTracer * std::pow(tracersError / error, 2.0) / ofPaths);
   }
   row(fmt::format("path tracer over paths, time, {} samples each", samples), inWords(equalSamples));

@@ -1,10 +1,10 @@
-// Voxelizers that miss nothing, beside OpenVDB's conversion of a mesh to a narrow band and beside loops over
-// triangles on the CPU, all in one run: the repeats alternate, so that a machine that grows slower meanwhile
-// does so for all.
+// Voxelizers that miss nothing, against OpenVDB's conversion of a mesh to a narrow band and against loops
+// over triangles on the CPU. The repeats alternate in one run, so that a machine that becomes slower does so
+// for all.
 // usage: bench_voxelization [--quick] [--repeats N] [--resolution R]... [scene texts] (default: 9 repeats,
 // 128 and 256, scenes/bunny.scene and scenes/sponza_crytek.scene below the current directory; --quick: one
-// repeat at 32 of scenes/cornell.scene). What should miss nothing and does, or finds other voxels than the
-// others, ends in exit code 2.
+// repeat at 32 of scenes/cornell.scene). Exit code 2: a voxelizer misses a voxel, or finds other voxels than
+// the others.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Candidate {
   std::string name;
   std::function<double()> runMs;
   std::uint64_t made = 0;              ///< fragments, bits or active voxels
-  double recall = -1, precision = -1;  ///< negative: not a set of voxels
+  double recall = -1, precision = -1;  ///< negative: it gives no set of voxels
   std::vector<double> ms{};
 };
 
@@ -76,7 +76,7 @@ VoxelSet voxelsOf(std::span<const Fragment> fragments, const glm::ivec3& resolut
   return set;
 }
 
-/// All of them ask the same test, so that none misses a voxel and none invents one, up to single precision.
+/// All candidates use the same test, so none may miss or invent a voxel, up to single precision.
 void requireRight(const Candidate& candidate) {
   if (candidate.made == 0) throw Error(candidate.name + ": made nothing");
   constexpr double kLeast = 0.999;

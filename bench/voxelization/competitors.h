@@ -10,11 +10,11 @@
 
 namespace lumivox::bench {
 
-/// A scene as flat arrays in voxels, made before the clock starts.
+/// A scene as flat arrays, made before the clock starts.
 struct Mesh {
   GridPlacement grid;
   std::vector<glm::vec3> positions;  ///< voxels
-  std::vector<glm::vec3> normals;    ///< unit, world
+  std::vector<glm::vec3> normals;    ///< unit length, world space
   std::vector<glm::vec2> texcoords;
   struct Triangle {
     std::uint32_t corner[3];
@@ -25,14 +25,14 @@ struct Mesh {
 };
 Mesh meshOf(const Scene& scene, const SceneSnapshot& snapshot, const GridPlacement& grid);
 
-/// The words of a fragment as the voxelizers write them (shaders/common/voxel.glsl).
+/// A fragment in the layout that the voxelizers write (shaders/common/voxel.glsl).
 struct Fragment {
   std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage, emission;
 };
 
-/// Which voxels every triangle touches, in single precision: the test of Schwarz & Seidel 2010, one column of
-/// the dominant axis after the other, as the shaders do it. Memory is reserved before the clock starts and
-/// used again, as the voxelizers' is.
+/// Finds the voxels that each triangle touches, in single precision: the test of Schwarz & Seidel 2010,
+/// column by column along the dominant axis, as in the shaders. As in the voxelizers, memory is allocated
+/// before the clock starts and reused.
 class CpuLoops {
  public:
   explicit CpuLoops(const Mesh& mesh);
@@ -49,8 +49,8 @@ class CpuLoops {
   std::unique_ptr<State> state_;
 };
 
-/// A narrow band of three voxels to each side, unsigned and signed distance as OpenVDB makes it; returns its
-/// active voxels.
+/// OpenVDB's narrow band of three voxels to each side, as unsigned and as signed distance. Returns its number
+/// of active voxels.
 class NarrowBand {
  public:
   explicit NarrowBand(const Mesh& mesh);

@@ -1,4 +1,4 @@
-// Loops over triangles, as fast as plain C++ makes them here.
+// Loops over triangles on the CPU, optimised plain C++.
 #include <algorithm>
 #include <atomic>
 #include <cassert>
@@ -41,7 +41,8 @@ namespace {
 
 constexpr float kRounding = 3e-7f;  // as in shaders/voxelization
 
-/// The interval tests of one projection of a triangle: per edge an axis and where centres may lie along it.
+/// The interval tests of one projection of a triangle: per edge an axis, and the interval along it in which
+/// centres of touched voxels lie.
 struct EdgeTests {
   float axisX[3], axisY[3], low[3], high[3];
 
@@ -81,7 +82,7 @@ void forEachTouched(const glm::vec3& cornerA, const glm::vec3& cornerB, const gl
       high(glm::clamp(glm::floor(most + tolerance), glm::vec3(-1.0f), limit - 1.0f));
   const glm::ivec3 size = high - low;
   if (size.x < 0 || size.y < 0 || size.z < 0) return;
-  // Bounds of one voxel in two directions: the triangle reaches each voxel of the row.
+  // The bounds are one voxel wide in two directions, so the triangle touches every voxel of the row.
   if ((size.x == 0) + (size.y == 0) + (size.z == 0) >= 2) {
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
@@ -131,7 +132,7 @@ void forEachTouched(const glm::vec3& cornerA, const glm::vec3& cornerB, const gl
   }
 }
 
-/// Octahedral; the length of the normal divides out.
+/// Octahedral encoding; the normal need not have unit length.
 std::uint32_t packNormal(const glm::vec3& normal) {
   const float inverse = 1.0f / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   float x = normal.x * inverse, y = normal.y * inverse;
@@ -153,7 +154,7 @@ std::uint32_t packSteps(const glm::vec3& offset) {
   return steps.x | steps.y << 10 | steps.z << 20;
 }
 
-/// Bilinear, at full resolution: less work than the voxelizers' mips.
+/// Bilinear at mip level 0, which is less work than the voxelizers' choice of a level.
 glm::vec3 sampled(const SurfaceTexture& texture, const glm::vec2& at) {
   const float x = at.x * static_cast<float>(texture.width) - 0.5f,
               y = (1.0f - at.y) * static_cast<float>(texture.height) - 0.5f;
@@ -185,7 +186,8 @@ struct CpuLoops::State {
   mutable VoxelSet occupied;
   std::vector<Fragment> list;
   std::atomic<std::uint64_t> count{0};
-  /// Of each thread, kept from call to call; on cache lines of its own, since every fragment moves its end.
+  /// Each thread's fragments, reused from call to call. Aligned to its own cache line, since every fragment
+  /// writes its size.
   struct alignas(64) Scratch {
     std::vector<Fragment> fragments;
   };
@@ -259,7 +261,7 @@ struct CpuLoops::State {
     }
   }
 
-  /// The list is long enough once the first call has counted.
+  /// The first call only counts; then the list is allocated with the right length.
   void flush(std::vector<Fragment>& mine) {
     const std::uint64_t first = count.fetch_add(mine.size());
     if (first + mine.size() <= list.size())
@@ -267,8 +269,8 @@ struct CpuLoops::State {
     mine.clear();
   }
 
-  /// `work(first, last, thread)` over all triangles. Threads of its own: a scheduler's workers may still
-  /// sleep when a job of a few milliseconds is over.
+  /// Calls `work(first, last, thread)` over all triangles. It starts its own threads: the workers of a
+  /// scheduler may still be asleep when a job of a few milliseconds is over.
   template <class Work>
   void overTriangles(int threads, const Work& work) {
     std::atomic<std::size_t> next{0};

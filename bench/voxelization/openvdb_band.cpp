@@ -24,7 +24,7 @@ std::uint64_t NarrowBand::convert(int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   constexpr float kBand = 3.0f;  // voxels to each side, OpenVDB's default
-  // The mesh is in voxels already.
+  // The mesh is in voxel units already.
   const auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
       *openvdb::math::Transform::createLinearTransform(1.0), state_->points, state_->triangles, kBand);
   return grid->activeVoxelCount();

@@ -13,7 +13,8 @@
 
 namespace lumivox::test {
 
-/// RMSE over that of nothing, both without the reference's own noise; and the mean over the reference's.
+/// RMSE divided by that of leaving the effect out, both without the reference's noise; and the mean divided
+/// by the reference's.
 struct Against {
   double rmse, ratio;
 };
@@ -29,7 +30,7 @@ inline LayeredImage referenceOf(const Scene& scene, const Picture& picture) {
   return cachedReference(scene, options);
 }
 
-/// `nothing`: what stands in a picture in which the effect is left out.
+/// `nothing`: the value of every pixel without the effect.
 inline Against against(const LayeredImage& reference, const ImageBuffer& image, const std::string& layer,
                        float nothing) {
   const ImageBuffer &right = reference.layers.at(layer), &variance = reference.layers.at(layer + ".variance");
@@ -48,7 +49,7 @@ inline Against occlusionAgainst(const LayeredImage& reference, const ImageBuffer
   return against(reference, image, "ambient_occlusion", 1.0f);
 }
 
-/// One frame of a pipeline as large as a picture.
+/// One frame of a pipeline at the picture's size.
 inline FrameResult pictured(const Scene& scene, const Picture& picture, const Pipeline& text,
                             const std::vector<std::string>& settings) {
   RenderOptions options;

@@ -12,7 +12,7 @@
 
 namespace lumivox::test {
 
-/// Voxels of one metre from the origin on, so that metres are voxels.
+/// A grid of 1 m voxels that starts at the origin, so that metres are voxels.
 inline BinaryGrid gridOf(const VoxelSet& set) {
   const glm::ivec3 size = set.resolution();
   const int layers = (size.z + BinaryGrid::kStack - 1) / BinaryGrid::kStack;

@@ -34,7 +34,7 @@ std::string decodedBase64(const std::string& text) {
   return bytes;
 }
 
-/// A descriptor that lies above those that the browser wants for itself, 3 and 4.
+/// Moves a descriptor above 3 and 4, which the browser uses for its pipe.
 int movedUp(int descriptor) {
   const int moved = fcntl(descriptor, F_DUPFD_CLOEXEC, 10);
   close(descriptor);
@@ -60,11 +60,11 @@ Browser::Browser() {
   if (pipe(to) != 0 || pipe(from) != 0) throw std::runtime_error("no pipe for the browser");
   for (int* end : {&to[0], &to[1], &from[0], &from[1]}) *end = movedUp(*end);
   const std::string profile = "--user-data-dir=" + profile_.path().string();
-  signal(SIGPIPE, SIG_IGN);  // a browser that dies is told by read and write
+  signal(SIGPIPE, SIG_IGN);  // read and write report a browser that died
   process_ = fork();
   if (process_ < 0) throw std::runtime_error("the browser could not be started");
   if (process_ == 0) {
-    setpgid(0, 0);  // it has children of its own
+    setpgid(0, 0);  // a group of its own, to end its child processes too
     dup2(to[0], 3);
     dup2(from[1], 4);
     const int nowhere = ::open("/dev/null", O_RDWR);

@@ -14,28 +14,28 @@ namespace lumivox::test {
 
 class Browser {
  public:
-  /// The program, or why there is none: for skip().
+  /// The browser's program; nothing if it is not installed.
   static std::optional<std::filesystem::path> program();
 
-  Browser();  ///< std::runtime_error when it does not start
+  Browser();  ///< throws std::runtime_error if it does not start
   ~Browser();
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
-  /// Loads a file in a window of this size, in pixels, and waits until all of it is there. Forgets what was
-  /// seen of the page before.
+  /// Loads a file in a window of this size, in pixels, and waits until it is complete. Clears errors() and
+  /// requests().
   void open(const std::filesystem::path& page, int width, int height);
   void resize(int width, int height);
-  /// As on a screen or in print ("screen", "print"), of a reader who prefers "light" or "dark".
+  /// Emulates the media type ("screen", "print") and the preferred colour scheme ("light", "dark").
   void emulate(const std::string& media, const std::string& scheme);
-  /// The value of a JavaScript expression; a promise is awaited. std::runtime_error with its message when it
-  /// throws.
+  /// The value of a JavaScript expression; a promise is awaited. Throws std::runtime_error with the message
+  /// of its exception.
   nlohmann::json evaluate(const std::string& expression);
   void screenshot(const std::filesystem::path& file);
 
   /// Errors of scripts, messages to console.error and loads that failed, since open().
   const std::vector<std::string>& errors() const { return errors_; }
-  /// Addresses that the page asked for, but for itself and what it holds (data:, blob:), since open().
+  /// Addresses that the page requested since open(), except itself and embedded data (data:, blob:).
   const std::vector<std::string>& requests() const { return requests_; }
 
  private:

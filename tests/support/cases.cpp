@@ -31,7 +31,7 @@ std::string textOf(const char* variable) {
   return value == nullptr ? std::string() : value;
 }
 
-/// "base_file: sentence" of the sentence in base_file_test.cpp.
+/// The name of a case for ./test: "base_file: sentence" for the sentence in base_file_test.cpp.
 std::string nameOf(const Catch::TestCaseInfo& info) {
   std::string file = fs::path(info.lineInfo.file).stem().string();
   constexpr std::string_view kEnd = "_test";
@@ -39,7 +39,7 @@ std::string nameOf(const Catch::TestCaseInfo& info) {
   return file + ": " + info.name;
 }
 
-/// Lines that ./test reads, each written at once: what comes before a crash is there.
+/// Lines that ./test reads. Each is written at once, so that a crash loses none.
 class Events {
  public:
   void add(const std::string& line) {
@@ -105,7 +105,8 @@ class Watch {
   std::thread thread_;
 };
 
-/// What a case finds, and leaves to the next one: as if each had a process of its own.
+/// The working folder and the environment, which restore() resets after a case, as if each case had its own
+/// process.
 class Surroundings {
  public:
   Surroundings() : folder_(fs::current_path()) {
@@ -153,7 +154,7 @@ class Listener : public Catch::TestEventListenerBase {
   std::optional<Surroundings> found_;
 };
 
-/// So that it stands for itself alone among the names that Catch2 takes.
+/// Escapes a name so that Catch2 matches it literally.
 std::string escaped(const std::string& name) {
   std::string result;
   for (const char letter : name) {

@@ -1,4 +1,4 @@
-// Clipmaps that are made by hand, and what is in them.
+// Clipmaps with given contents, and their voxels read back.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// Which input of the cones it is, for test::cones::gather.
+/// The name of gather's input for this store, for test::cones::gather.
 inline const char* inputOf(const RadianceClipmap&) {
   return "clipmap";
 }
@@ -34,7 +34,7 @@ struct ClipmapSettings {
   bool lights = true;
 };
 
-/// The levels as voxelized of a scene at rest, seen by its camera.
+/// The clipmap of a static scene around its camera, as voxelized.
 inline RadianceClipmap voxelized(const Scene& scene, const ClipmapSettings& settings = {}) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "clipmap", scene, snapshot);
@@ -64,8 +64,8 @@ inline RadianceClipmap filtered(const RadianceClipmap& levels, const ClipmapSett
   return harness.output<RadianceClipmap>("mips");
 }
 
-/// Levels around `eye` of which `fill` gives the value of each face of each voxel: by the level, the middle
-/// of the voxel (m) and the face. Filtered.
+/// A filtered clipmap around `eye`. `fill` gives the value of a voxel's face from the level, the voxel's
+/// centre (m) and the face.
 using Fill = std::function<glm::vec4(int level, const glm::vec3& middle, int face)>;
 inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::vec3& eye, const Fill& fill) {
   Scene scene = cones::emptyScene();
@@ -79,7 +79,7 @@ inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::v
                               0.0f);
     for (int level = 0; level < result.around; ++level) {
       const RadianceClipmap::Block& block = result.levels[static_cast<std::size_t>(level)].own;
-      // Texels around the block hold the voxels of its other side.
+      // The border texels of the block repeat the voxels of the opposite side.
       for (int z = -1; z <= block.period; ++z)
         for (int y = -1; y <= block.period; ++y)
           for (int x = -1; x <= block.period; ++x) {
@@ -106,7 +106,7 @@ inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::v
   return filtered(result, settings);
 }
 
-/// A face of the voxels of a level, numbered from its first one.
+/// The values of one face at a level, by voxel, counted from the level's first voxel.
 inline std::map<Cell, glm::vec3> voxelsOf(const RadianceClipmap& clipmap, int level, int face) {
   std::map<Cell, glm::vec3> result;
   for (const auto& [voxel, value] : clipmap.voxels(level, face)) result[{voxel.x, voxel.y, voxel.z}] = value;

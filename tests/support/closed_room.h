@@ -1,4 +1,4 @@
-// A closed room with things in it, for what surface elements see.
+// Closed rooms for tests of the visibility between surface elements.
 #pragma once
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace lumivox::test {
 
-/// A cube of 1 m, closed: every bin of its walls holds a wall.
+/// A closed cube of 1 m: every direction bin of its walls sees a wall.
 inline Scene closedCube(float albedo = 0.5f) {
   SceneBuilder builder;
   builder.box({0, 0, 0}, {1, 1, 1}, builder.lambert(albedo), true);
@@ -19,7 +19,7 @@ inline Scene furnishedCube(bool moving = false) {
   SceneBuilder builder;
   const int grey = builder.lambert(0.5f);
   builder.box({0, 0, 0}, {1, 1, 1}, grey, true);
-  // A gap below the boxes: surfaces that lie on each other see nothing.
+  // A gap below the boxes, since surfaces in contact see nothing.
   builder.box({0.15f, 0.01f, 0.2f}, {0.45f, 0.6f, 0.5f}, grey, false);
   const std::size_t first = builder.scene.objects.size();
   builder.box({0.55f, 0.01f, 0.55f}, {0.85f, 0.3f, 0.85f}, grey, false);

@@ -14,8 +14,8 @@ namespace lumivox::test::cones {
 
 inline constexpr int kPixels = 8;  ///< along both sides of the images here
 
-/// A g-buffer of one surface point in every pixel; with a specular albedo where its exponent, in w, is above
-/// 0.
+/// A g-buffer with the same surface point in every pixel. It has a specular albedo if the exponent in
+/// `specular`.w is above 0.
 inline GBuffer surfacePoint(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& albedo,
                             const glm::vec4& specular = glm::vec4(0.0f)) {
   gpu::TextureDescription description;
@@ -35,7 +35,7 @@ inline GBuffer surfacePoint(const glm::vec3& position, const glm::vec3& normal, 
   return result;
 }
 
-/// A grid of [-1,1]^3 with all levels allocated; `fill` gives the finest.
+/// A grid over [-1,1]^3 with all levels allocated; `fill` gives the finest.
 inline RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, int, int)>& fill) {
   gpu::TextureDescription description;
   description.kind = gpu::TextureKind::d3;
@@ -57,7 +57,7 @@ inline RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, 
   return grid;
 }
 
-/// A committed pipeline with a line added to each pass of these kinds.
+/// A committed pipeline with a line added to the first pass of each of these kinds.
 inline Pipeline pipelineWith(const std::string& name,
                              const std::vector<std::pair<std::string, std::string>>& added) {
   const Pipeline text = pipeline(name);
@@ -70,8 +70,8 @@ inline Pipeline pipelineWith(const std::string& name,
   return Pipeline::parse(source, text.file);
 }
 
-/// Six grids of [-1,1]^3 with all levels allocated; `fill` gives the finest, of the face with the outward
-/// normal +x, -x, +y, -y, +z or -z.
+/// Six grids over [-1,1]^3 with all levels allocated. `fill` gives the finest level by face and voxel; the
+/// faces' outward normals are +x, -x, +y, -y, +z and -z, in this order.
 inline DirectionalRadianceGrid makeDirections(int resolution,
                                               const std::function<glm::vec4(int, int, int, int)>& fill) {
   DirectionalRadianceGrid result;
@@ -104,7 +104,7 @@ inline RadianceGrid filtered(RadianceGrid grid, const char* opacity = "facing") 
   return harness.output<RadianceGrid>("mips");
 }
 
-/// Coarser levels in six grids, from a finest level of six or of one.
+/// Filters to six directional grids, from a finest level of six grids or of one.
 template <class Finest>
 DirectionalRadianceGrid filteredDirections(const Finest& finest) {
   const Scene scene = emptyScene();
@@ -138,7 +138,7 @@ struct GatherSettings {
   const char* resolution = "full";
 };
 
-/// Which input of the cones a store is.
+/// The name of gather's input for each store.
 inline const char* inputOf(const RadianceGrid&) {
   return "grid";
 }
@@ -197,7 +197,7 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& p
       [](PassHarness& harness) { return pixelOf(imageOf(*harness.output<Image>("glossy").texture)); });
 }
 
-/// What one cone of a mirroring lobe along a direction sees.
+/// The radiance that one cone of a mirroring lobe gathers along a direction.
 template <class Store>
 glm::vec3 alongNormal(const Store& grid, const glm::vec3& position, const glm::vec3& direction,
                       float exponent, const GatherSettings& settings,
@@ -205,7 +205,7 @@ glm::vec3 alongNormal(const Store& grid, const glm::vec3& position, const glm::v
   const glm::vec3 d = glm::normalize(direction);
   Scene scene = emptyScene(environment);
   scene.cameras.front().eye =
-      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
+      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // so that the mirror direction is the normal
   return gatherGlossy(scene, grid, position, d, glm::vec4(1, 1, 1, exponent), settings);
 }
 
@@ -216,12 +216,12 @@ struct InjectSettings {
   int bounces = 1;
   const ScatteringGrid* media = nullptr;
   int lightSamples = 1;
-  double backWeight = 1.0 / 256.0;  // directional, as the next
+  double backWeight = 1.0 / 256.0;  // of directional grids, like the next member
   const char* opaqueAlong = "facing";
 };
 
-/// The grid after injecting the fragments of a scene under its lights: RadianceGrid or
-/// DirectionalRadianceGrid.
+/// The grid, RadianceGrid or DirectionalRadianceGrid, after injection of a scene's fragments under its
+/// lights.
 template <class Grid>
 Grid injectedAs(const char* pass, const Scene& scene, int resolution, const InjectSettings& settings = {},
                 VoxelFragments* fragments = nullptr) {

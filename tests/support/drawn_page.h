@@ -1,5 +1,5 @@
-// A page drawn without a browser: its scripts run in Node before a document of their own (page_dom.js). What
-// it cannot see is how the page looks: page_test does, where there is a browser.
+// A page drawn without a browser: its scripts run in Node on a small DOM (page_dom.js). It cannot check how
+// the page looks; page_test does that where there is a browser.
 #pragma once
 
 #include <cstdlib>
@@ -25,7 +25,7 @@ inline nlohmann::json drawnPage(const std::filesystem::path& page) {
   return nlohmann::json::parse(drawn.output);
 }
 
-/// The JSON of a block of records in a page.
+/// The JSON of a block of records in a page, by the block's id.
 inline nlohmann::json pageRecords(const std::string& page, const std::string& id = "data") {
   const std::string start = "<script type=\"application/json\" id=\"" + id + "\">";
   const std::size_t at = page.find(start);

@@ -1,4 +1,4 @@
-// Light at surface elements, of the pipelines of implicit visibility.
+// Light at surface elements in the pipelines of implicit visibility.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,7 @@ using implicit_visibility::BinMapping, implicit_visibility::DirectionBins, impli
     implicit_visibility::ElementLight, implicit_visibility::ElementLink, implicit_visibility::ElementLinks,
     implicit_visibility::ElementTree, implicit_visibility::SurfaceElements;
 
-/// One frame of `implicit_visibility_lights`, or of `implicit_visibility` in place of it, and what its passes
-/// made.
+/// One frame of the committed pipeline `text`, with the outputs of its passes.
 class LitElements {
  public:
   LitElements(const Scene& scene, const std::vector<std::string>& settings,
@@ -39,7 +38,7 @@ class LitElements {
   const ElementLinks& links() const { return kept<ElementLinks>(*executor_, "links", "links"); }
   const ElementLight& light() const { return kept<ElementLight>(*executor_, "illuminate", "light"); }
 
-  /// Red of a texture with two texels a leaf.
+  /// The red channel of one side of a leaf, in a texture with two texels per leaf.
   static double leafValue(const std::vector<float>& floats, std::size_t leaf, int side) {
     return floats[4 * (2 * leaf + static_cast<std::size_t>(side))];
   }
@@ -53,7 +52,7 @@ class LitElements {
       result.push_back(leafValue(floats, static_cast<std::size_t>(leaf), 0));
     return result;
   }
-  /// Mean by area over the leaves, of all objects or of one.
+  /// The area-weighted mean over the leaves of all objects or of one.
   double mean(const std::vector<double>& ofLeaves, std::optional<std::uint32_t> object = {}) const {
     double sum = 0.0, area = 0.0;
     for (std::size_t leaf = 0; leaf < ofLeaves.size(); ++leaf) {
@@ -67,7 +66,7 @@ class LitElements {
   FrameResult frame;
 
  private:
-  /// The committed text names fewer bounces than the pass takes.
+  /// The committed pipeline with a wider range of bounces, up to the pass's limit.
   static Pipeline withAllBounces(const std::string& name) {
     const Pipeline committed = pipeline(name);
     std::string text = committed.document->source;

@@ -1,4 +1,4 @@
-// Libraries' files, read and changed by their sections.
+// Reads and changes sections of libraries' ELF files.
 #pragma once
 
 #include <elf.h>
@@ -21,7 +21,8 @@ void setPart(std::string& bytes, std::size_t offset, const Part& part) {
   std::memcpy(bytes.data() + offset, &part, sizeof(part));
 }
 
-/// Where the header of a section lies in a whole 64-bit ELF file; throws when there is none of that name.
+/// The offset of a section's header in the bytes of a 64-bit ELF file. Throws if there is no section of that
+/// name.
 inline std::size_t headerOfSection(const std::string& bytes, const std::string& name) {
   const auto file = partOf<Elf64_Ehdr>(bytes, 0);
   const auto headerAt = [&](std::size_t i) { return file.e_shoff + i * sizeof(Elf64_Shdr); };
@@ -37,7 +38,7 @@ struct ElfSymbol {
   Elf64_Sym entry{};
 };
 
-/// Symbols that the file shows to others, without those that it takes from others.
+/// The symbols that the file exports, without those that it imports.
 inline std::vector<ElfSymbol> exportedSymbols(const std::string& bytes) {
   const auto table = partOf<Elf64_Shdr>(bytes, headerOfSection(bytes, ".dynsym")),
              names = partOf<Elf64_Shdr>(bytes, headerOfSection(bytes, ".dynstr"));

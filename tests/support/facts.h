@@ -1,5 +1,4 @@
-// Messages are compared by their facts: the place, the names and the numbers. The sentences around them may
-// change.
+// Compares messages by their facts: places, names and numbers. The sentences around them may change.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -12,9 +11,9 @@
 
 namespace lumivox::test {
 
-/// Matches a text or an exception that tells all facts (texts or numbers), each as a whole word or number, in
-/// this order: `CHECK_THAT(message, Tells("a.scene:4:15", "n.obj", "m.obj"))`, `CHECK_THROWS_MATCHES(work(),
-/// Error, Tells("radius", -1))`.
+/// Matches a text or an exception that contains all facts (texts or numbers), each as a whole word or number,
+/// in this order: `CHECK_THAT(message, Tells("a.scene:4:15", "n.obj", "m.obj"))`,
+/// `CHECK_THROWS_MATCHES(work(), Error, Tells("radius", -1))`.
 class Tells : public Catch::MatcherBase<std::string> {
  public:
   template <class... Facts>
@@ -51,8 +50,8 @@ class Tells : public Catch::MatcherBase<std::string> {
     }
   }
 
-  /// Without the source line and the caret of a Diagnostic, which begin with two blanks: they hold every name
-  /// of the input.
+  /// The text without a Diagnostic's source line and caret, which begin with two blanks: the source line
+  /// contains every name of the input.
   static std::string withoutSource(const std::string& text) {
     std::istringstream lines(text);
     std::string said;
@@ -64,8 +63,7 @@ class Tells : public Catch::MatcherBase<std::string> {
   static bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
   static bool isDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-  /// Whether text[begin, end) is no part of a longer word or number: 5 stands neither in 15, -5 and 0.5 nor
-  /// in 5.2.
+  /// Whether text[begin, end) is not part of a longer word or number: 5 is not found in 15, -5, 0.5 or 5.2.
   static bool isWhole(const std::string& text, std::size_t begin, std::size_t end) {
     const auto at = [&](std::size_t index) { return index < text.size() ? text[index] : ' '; };
     const char first = at(begin), last = at(end - 1), before = at(begin - 1), twoBefore = at(begin - 2);

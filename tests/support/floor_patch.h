@@ -1,4 +1,4 @@
-// A patch of a floor as any camera sees it, and cameras that turn.
+// The mean over a patch of a floor from any camera, and cameras that turn.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace lumivox::test {
 
-/// A square about `centre`, in metres in the world, half as wide as `half`.
+/// A square on the floor in world space, m: its centre and half of its side.
 struct FloorSquare {
   glm::dvec3 centre;
   float half;
@@ -21,8 +21,8 @@ struct Patch {
   int pixels = 0;
 };
 
-/// The mean of one channel over a square of a floor. A pixel weighs as much as the floor that it sees, and
-/// less towards the square's border, so that the same square has the same mean in any view.
+/// The mean of one channel over a square of a floor. A pixel's weight is the floor area that it sees times a
+/// tent that falls to 0 at the square's border, so that the mean does not depend on the view.
 inline Patch patchOf(const GBuffer& gbuffer, const SceneSnapshot& snapshot, const ImageBuffer& image,
                      const FloorSquare& square, int channel = 0) {
   const std::vector<float> places = gbuffer.position->downloadFloats(0),
@@ -38,8 +38,8 @@ inline Patch patchOf(const GBuffer& gbuffer, const SceneSnapshot& snapshot, cons
       if (places[i + 3] == 0.0f || normals[i + 1] < 0.9f || off.y > 0.01f ||
           std::max(off.x, off.z) >= square.half)
         continue;
-      // The area that a pixel sees: its solid angle, which falls with the cosine to the view axis cubed,
-      // times the squared distance, over the cosine to the floor; and a tent.
+      // The floor area that a pixel sees is its solid angle (proportional to the cubed cosine to the view
+      // axis) times the squared distance, divided by the cosine to the floor. It is multiplied by the tent.
       const glm::vec3 way = place - camera.eye;
       const double depth = glm::dot(way, camera.forward), weight = depth * depth * depth / -way.y *
                                                                    (1.0 - off.x / square.half) *
@@ -52,7 +52,7 @@ inline Patch patchOf(const GBuffer& gbuffer, const SceneSnapshot& snapshot, cons
   return patch;
 }
 
-/// The first camera turned about the vertical.
+/// Turns the first camera about the vertical.
 inline void turnCamera(Scene& scene, double degrees) {
   Camera& camera = scene.cameras.front();
   const glm::dvec3 way = camera.target - camera.eye;

@@ -8,8 +8,9 @@
 
 namespace lumivox::test {
 
-/// From a point with a normal to a polygon in front of it (Lambert 1760): half the sum over its edges of the
-/// angle that an edge takes times the cosine of the angle's plane, over pi.
+/// The form factor from a point with a normal to a polygon in front of it (Lambert 1760): the sum over the
+/// edges of the angle that an edge subtends, times the cosine between the normal and that of the angle's
+/// plane, divided by 2 pi.
 inline double polygonFormFactor(const glm::dvec3& point, const glm::dvec3& normal,
                                 const std::vector<glm::dvec3>& corners) {
   double sum = 0.0;
@@ -21,7 +22,7 @@ inline double polygonFormFactor(const glm::dvec3& point, const glm::dvec3& norma
   return std::abs(sum) / (2.0 * kPi);
 }
 
-/// From the middle of a floor to a square of half side a, 1 m above it.
+/// From a floor point to a square of half side a, centred 1 m above it.
 inline double squareAbove(double a) {
   return polygonFormFactor({0, 0, 0}, {0, 1, 0}, {{-a, 1, -a}, {a, 1, -a}, {a, 1, a}, {-a, 1, a}});
 }

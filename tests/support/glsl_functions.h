@@ -13,14 +13,15 @@
 
 namespace lumivox::test {
 
-/// The tree's, or what tests/mutation/mutate has made of them.
+/// The folder of the tree's shaders, or of those that tests/mutation/mutate has changed.
 inline std::filesystem::path shaderDirectory() {
   const char* changed = std::getenv("LUMIVOX_TEST_SHADERS");
   return changed != nullptr ? std::filesystem::path(changed) : sourceDirectory() / "shaders";
 }
 
-/// `results[i]` of the statements `body`, which read `inputs[i]` as `given` and write `found`, both vec4,
-/// with the functions of the files below shaders/ in scope: each after those that it includes.
+/// Runs the statements `body` for every input: they read `given` (inputs[i]) and write `found` (results[i]),
+/// both vec4. The functions of `files` below shaders/ are in scope; list each file after those that it
+/// includes.
 inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, const std::string& body,
                                         const std::vector<glm::vec4>& inputs) {
   static gpu::Device glsl({"auto", gpu::ShaderInput::glsl});

@@ -9,7 +9,7 @@
 
 namespace lumivox::test {
 
-/// Programs here are short GLSL texts; SPIR-V comes with the packs, see shader_library_test.
+/// A device for programs in GLSL; the tests of SPIR-V use packs, see shader_library_test.
 inline gpu::Device& device() {
   static gpu::Device instance({"auto", gpu::ShaderInput::glsl});
   return instance;
@@ -50,7 +50,7 @@ inline gpu::TextureDescription image(gpu::Format format, int width, int height, 
   return {gpu::TextureKind::d2, format, width, height, 1, levels};
 }
 
-/// A vertex shader that covers the whole target with one triangle, at depth z of clip space: Depth.
+/// A vertex shader that covers the whole target with one triangle at the clip-space depth of its block Depth.
 inline const std::string kWholeTarget = R"(
   layout(std140, binding = 0) uniform Block { float z; };
   void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, z, 1.0); })";
@@ -59,14 +59,14 @@ struct Depth {
   float unused[3] = {};
 };
 
-/// Draws so many vertices to targets.
+/// Draws a number of vertices to targets.
 inline void draw(const gpu::RenderTargets& targets, const gpu::Program& program, const Bindings& bindings,
                  const gpu::RasterState& state = {}, std::uint32_t vertices = 3) {
   const gpu::Drawing drawing = device().drawTo(targets, state);
   device().draw(program, bindings, vertices);
 }
 
-/// Runs groups of a program, and waits for what they write.
+/// Dispatches groups of a program, followed by a barrier.
 inline void dispatch(const gpu::Program& program, const Bindings& bindings, const glm::uvec3& groups) {
   device().dispatch(program, bindings, groups);
   device().barrier();

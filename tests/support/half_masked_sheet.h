@@ -4,7 +4,7 @@
 
 namespace lumivox::test {
 
-/// A sheet of two metres whose left half a mask cuts away, half a metre over a whole one.
+/// A sheet of 2 m whose left half is masked out, 0.5 m above an unmasked sheet.
 inline void addHalfMaskedSheet(SceneBuilder& builder) {
   SurfaceTexture half;
   half.width = 2, half.height = 1, half.mask = true;

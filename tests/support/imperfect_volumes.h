@@ -1,4 +1,4 @@
-// Volumes made by hand for imperfect volumes, where metres are voxels, and the passes over them.
+// Volumes with given contents for imperfect volumes, where metres are voxels, and the passes over them.
 #pragma once
 
 #include <array>
@@ -16,17 +16,18 @@ namespace lumivox::test::volumes {
 
 inline const double kY0 = 0.5 / std::sqrt(kPi), kY1 = std::sqrt(0.75 / kPi);
 
-/// Coefficients of a surface that sends `front` into the half space of its normal and `back` into the other.
+/// SH coefficients of a surface that sends radiance `front` into the half space of its normal and `back` into
+/// the other.
 inline glm::dvec4 bothSides(double front, double back, const glm::dvec3& normal) {
   const double difference = (front - back) * kPi * kY1;
   return {(front + back) * 2.0 * kPi * kY0, difference * normal.y, difference * normal.z,
           difference * normal.x};
 }
-/// Of constant radiance.
+/// SH coefficients of constant radiance.
 inline glm::vec4 constant(double radiance) {
   return {radiance * 4.0 * kPi * kY0, 0.0, 0.0, 0.0};
 }
-/// Irradiance of two bands.
+/// Irradiance from the coefficients of two SH bands.
 inline double irradiance(const glm::dvec4& coefficients, const glm::dvec3& normal) {
   return kPi * kY0 * coefficients.x +
          2.0 * kPi / 3.0 * kY1 *
@@ -38,7 +39,7 @@ inline gpu::TextureRef volumeTexture(const glm::ivec3& size, gpu::Format format,
   return textureOf(volumeOf(size, format), values);
 }
 
-/// A volume of voxels of a metre from the origin on.
+/// A volume of 1 m voxels that starts at the origin.
 class Volume {
  public:
   explicit Volume(const glm::ivec3& size)
@@ -63,7 +64,7 @@ class Volume {
         for (int x = 0; x < size_.x; ++x) work(glm::ivec3(x, y, z));
   }
 
-  /// A surface with a normal, or none of its own (length 0), that sends so much on both sides.
+  /// Fills a voxel with a surface: its normal, or length 0 for none, and the radiance that its sides send.
   Volume& occupy(const glm::ivec3& voxel, const glm::dvec3& normal, double front = 0.0, double back = 0.0,
                  double albedo = 0.5) {
     set_.insert(voxel);
@@ -78,7 +79,7 @@ class Volume {
     }
     return *this;
   }
-  /// All voxels of a kind, with the normal that the caller says.
+  /// Fills all voxels for which `is` is true, with normals by `normal`.
   Volume& occupyWhere(const std::function<bool(const glm::ivec3&)>& is,
                       const std::function<glm::dvec3(const glm::ivec3&)>& normal, double front,
                       double back = 0.0, double albedo = 0.5) {
@@ -112,7 +113,7 @@ class Volume {
   std::array<std::vector<float>, 3> sent_;
 };
 
-/// A closed room of so many voxels a side in a shell of one voxel, whose walls shine inwards.
+/// A closed room of `inside` voxels a side in a shell of one voxel, whose walls send radiance inwards.
 inline Volume closedRoom(int inside, double radiance, double albedo = 0.5) {
   const int last = inside + 1;
   Volume volume(glm::ivec3(inside + 2));
@@ -131,7 +132,7 @@ struct ReadPoint {
   glm::vec3 place, normal;
 };
 
-/// One row of pixels, one for each point; white.
+/// A white g-buffer of one row, with a pixel for each point.
 inline GBuffer seen(const std::vector<ReadPoint>& points) {
   return gbufferWhere({static_cast<int>(points.size()), 1}, [&](int x, int) {
     const ReadPoint& point = points[static_cast<std::size_t>(x)];
@@ -139,7 +140,8 @@ inline GBuffer seen(const std::vector<ReadPoint>& points) {
   });
 }
 
-/// Every voxel of the walls of a closed room, without the edges, as a surface point so far before its middle.
+/// A surface point for every voxel of the walls of a closed room, without the edges. `before`: its distance
+/// in front of the voxel's centre.
 inline std::vector<ReadPoint> wallsOf(const Volume& room, float before = 0.0f) {
   std::vector<ReadPoint> points;
   const int last = room.size().x - 1;
@@ -156,7 +158,7 @@ inline std::vector<ReadPoint> wallsOf(const Volume& room, float before = 0.0f) {
   return points;
 }
 
-/// A pass of the technique over a row of pixels.
+/// A pass of the technique with a camera of one row of pixels.
 inline LonePass volumePass(const std::string& pass, Scene scene, int width = 1) {
   scene.cameras.front().width = width;
   scene.cameras.front().height = 1;
@@ -169,7 +171,7 @@ inline Scene underSky(double radiance) {
   return builder.scene;
 }
 
-/// `march` over a volume, with all that it may read.
+/// `march` over a volume, with all its inputs.
 inline LonePass marching(const Volume& volume, const Settings& settings, double sky = 0.0) {
   LonePass runner = volumePass("march", underSky(sky));
   runner.in("opacity", volume.opacity())
@@ -183,7 +185,7 @@ inline ShGrid arriving(const Volume& volume, const Settings& settings, double sk
   return marching(volume, settings, sky).out<ShGrid>("incoming");
 }
 
-/// The first channel of a voxel.
+/// The coefficients of a voxel's first channel.
 inline glm::dvec4 coefficientsIn(const ShGrid& light, const glm::ivec3& voxel) {
   const ShGrid::Level& level = light.levels.front();
   const std::vector<float> values = level.coefficients[0]->downloadFloats(0);
@@ -192,7 +194,7 @@ inline glm::dvec4 coefficientsIn(const ShGrid& light, const glm::ivec3& voxel) {
   return glm::dvec4(values[i], values[i + 1], values[i + 2], values[i + 3]) * double{light.unit};
 }
 
-/// E / pi of each point, of the first channel.
+/// E / pi at each point, in the first channel.
 inline std::vector<double> gathered(const Volume& volume, const ShGrid& light,
                                     const std::vector<ReadPoint>& points, const Settings& settings = {},
                                     double sky = 0.0, const char* output = "diffuse") {
@@ -216,7 +218,7 @@ inline double meanOf(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Light of the same kind in every voxel: its radiance by channel, the same from all sides.
+/// Light that is the same from all directions. `radianceOf` gives its radiance by voxel and channel.
 template <class RadianceOf>
 ShGrid evenLight(const Volume& volume, const RadianceOf& radianceOf) {
   ShGrid light;

@@ -1,5 +1,5 @@
-// How a surface point reads the volume (Eq. 5, 'voxels six' or 'eight'), written anew on the host in double
-// precision.
+// A surface point's read of the volume (Eq. 5, 'voxels six' or 'eight'), implemented again on the host in
+// double precision.
 #pragma once
 
 #include <cmath>
@@ -17,8 +17,8 @@ class ReadingOnHost {
  public:
   struct Choice {
     bool six = true;       ///< else eight
-    bool filtered = true;  ///< neighbours are places, read trilinearly; else whole voxels
-    bool free = true;      ///< only voxels that are free and open to the surface count, where there are any
+    bool filtered = true;  ///< neighbours are positions that are interpolated trilinearly; else whole voxels
+    bool free = true;      ///< only voxels that are free and open to the surface count, if there are any
     double shift = 0.5;    ///< voxels
   };
   struct Share {
@@ -30,7 +30,7 @@ class ReadingOnHost {
   ReadingOnHost(const VoxelSet& occupied, const std::vector<float>& normals, const Choice& choice)
       : occupied_(occupied), normals_(normals), choice_(choice) {}
 
-  /// The voxels that a surface point reads, once each; the weights' sum is 1. Lengths in voxels.
+  /// The voxels that a surface point reads, without duplicates. The weights sum to 1. Lengths are in voxels.
   std::vector<Share> sharesAt(const glm::dvec3& surface, const glm::dvec3& normal) const {
     std::vector<Share> shares;
     const std::optional<glm::ivec3> before =
@@ -49,7 +49,7 @@ class ReadingOnHost {
     return glm::clamp(glm::ivec3(voxel), glm::ivec3(0), occupied_.resolution() - 1);
   }
 
-  /// Places with positive cosines, and those.
+  /// The neighbours' positions with positive cosines to the normal, and these cosines.
   std::vector<std::pair<glm::dvec3, double>> neighbours(const glm::dvec3& surface,
                                                         const glm::dvec3& normal) const {
     const glm::dvec3 shifted = surface + choice_.shift * normal;
@@ -102,8 +102,8 @@ class ReadingOnHost {
     return result;
   }
 
-  /// Its own voxel where that is free; else the free one beside it that lies most in the direction in which
-  /// the surface and all surfaces of its voxel look together.
+  /// The voxel in front of the surface: its own voxel if that is free, else the free neighbour whose
+  /// direction is closest to the mean of the surface's normal and the voxel's mean normal.
   std::optional<glm::ivec3> voxelBefore(const glm::dvec3& surface, const glm::dvec3& normal) const {
     const glm::ivec3 own = clamped(glm::floor(surface));
     if (!occupied_.contains(own)) return own;
@@ -119,7 +119,7 @@ class ReadingOnHost {
         for (int x = -1; x <= 1; ++x) {
           const glm::ivec3 way(x, y, z), voxel = own + way;
           if (way == glm::ivec3(0) || !occupied_.inside(voxel) || occupied_.contains(voxel)) continue;
-          // Of equals, but for rounding, the first.
+          // The margin keeps the first of those that are equal up to rounding.
           const double cosine = glm::dot(along, glm::normalize(glm::dvec3(way)));
           if (cosine <= most + 1e-3) continue;
           most = cosine;
@@ -128,7 +128,7 @@ class ReadingOnHost {
     return found;
   }
 
-  /// Free, and so are the voxels that the straight way to it passes two and three fifths of its length on.
+  /// Whether the voxel is free and so are the voxels at 2/5 and 3/5 of the straight line to it.
   bool isOpen(const glm::ivec3& voxel, const glm::ivec3& before) const {
     if (occupied_.contains(voxel)) return false;
     const glm::ivec3 apart = glm::abs(voxel - before);

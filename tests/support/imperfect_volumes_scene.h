@@ -1,5 +1,5 @@
-// Committed scenes as imperfect volumes, on the device and on the host; and the committed pipeline with other
-// voxelizers in it.
+// Committed scenes as imperfect volumes, on the device and on the host, and the committed pipeline with other
+// voxelizers.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace lumivox::test::volumes {
 
-/// A scene as an imperfect volume that is lit.
+/// A scene as a lit imperfect volume.
 struct Lit {
   Scene scene;
   SceneSnapshot snapshot;
@@ -42,7 +42,8 @@ struct Lit {
   }
 };
 
-/// The volume read back, and what arrives in a voxel by plain Monte Carlo in double precision.
+/// The volume read back, with the light that arrives in a voxel computed by plain Monte Carlo in double
+/// precision.
 class VolumeOnHost {
  public:
   explicit VolumeOnHost(const Lit& lit)
@@ -56,11 +57,12 @@ class VolumeOnHost {
   /// Mean normals of the voxels, rgba.
   const std::vector<float>& normals() const { return normals_; }
 
-  /// What arrives in a voxel, of what voxels send by the side that is seen, and by their two bands.
+  /// SH coefficients of the light that arrives in a voxel. surface: senders emit by the side that is seen.
+  /// harmonics: they emit by their two SH bands.
   struct Coefficients {
     std::array<glm::dvec4, 3> surface{}, harmonics{};
   };
-  /// By jittered strata of the sphere, so many in z and twice as many around it.
+  /// Integrates over jittered strata of the sphere: `strata` along z and twice as many around it.
   Coefficients quadratureIn(const glm::ivec3& voxel, int strata, unsigned seed,
                             const glm::dvec3& environment) const {
     std::mt19937 random(seed);
@@ -110,7 +112,7 @@ class VolumeOnHost {
     return result;
   }
 
-  /// Radiance of the side of a voxel that a ray in the direction of `way` meets.
+  /// The radiance of the voxel's side that a ray in direction `way` hits.
   glm::dvec3 sentBy(const glm::ivec3& voxel, const glm::dvec3& way) const {
     const std::size_t i = 4 * set_.bitOf(voxel);
     glm::dvec3 normal(normals_[i], normals_[i + 1], normals_[i + 2]), along(0.0);
@@ -143,7 +145,7 @@ class VolumeOnHost {
     const auto met = meets(voxel, way);
     return met ? sentBy(*met, way) : glm::dvec3(0.0);
   }
-  /// What the two bands of a voxel say of the direction towards a ray that meets it along `way`.
+  /// The radiance of a voxel's two SH bands towards the origin of a ray that hits it along `way`.
   glm::dvec3 bandsOf(const glm::ivec3& voxel, const glm::dvec3& way) const {
     const std::size_t i = 4 * set_.bitOf(voxel);
     glm::dvec3 radiance;
@@ -156,14 +158,14 @@ class VolumeOnHost {
   }
 };
 
-/// What the volume is made of.
+/// How the volume is voxelized, and further lines for its passes.
 struct Made {
   bool points = true, reprojected = true;
-  /// Further lines of the passes that send rays, of all that read neighbours, and of the rays of light alone.
+  /// Further lines: for the passes that trace rays, for all that read neighbours, and for `march` alone.
   std::string ofRays = {}, ofReading = {}, ofLight = {};
 };
 
-/// The committed pipeline of light and occlusion with a volume made so.
+/// The committed pipeline of light and occlusion with such a volume.
 inline Pipeline volumePipeline(const Made& made) {
   const Pipeline committedText = pipeline("imperfect_volumes_occlusion");
   std::string text = committedText.document->source;

@@ -36,7 +36,7 @@ KeptTable::KeptTable(const std::string& name, std::vector<MeasuredTable::Column>
 void KeptTable::row(const std::string& name, std::initializer_list<double> values) {
   REQUIRE(values.size() == table_.columns.size());
   table_.rows.push_back({name, values});
-  // For who looks on.
+  // Printed as progress.
   std::printf("%s:", name.c_str());
   const char* between = "";
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -50,7 +50,7 @@ void KeptTable::row(const std::string& name, std::initializer_list<double> value
 }
 
 KeptTable::~KeptTable() noexcept(false) {
-  if (std::uncaught_exceptions() > 0) return;  // the test has failed before the end of the table
+  if (std::uncaught_exceptions() > 0) return;  // the test failed before the table was complete
   try {
     table_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     std::vector<MeasuredTable> all;

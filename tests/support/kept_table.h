@@ -1,4 +1,4 @@
-// Tables that slow tests measure, compared with those that are kept in docs/benchmarks/measured_tables.json.
+// Tables that slow tests measure, compared with the kept ones in docs/benchmarks/measured_tables.json.
 #pragma once
 
 #include <chrono>
@@ -10,9 +10,9 @@
 
 namespace lumivox::test {
 
-/// A table of a slow test. At its end it is compared with the kept one: a figure beyond its tolerance, or a
-/// row that only one of them has, fails the test. With LUMIVOX_KEEP_TABLES=1 (`./test --slow --keep`) it
-/// takes the place of the kept one.
+/// A table of a slow test. The destructor compares it with the kept table: a figure beyond its tolerance, or
+/// a row that only one of them has, fails the test. With LUMIVOX_KEEP_TABLES=1 (`./test --slow --keep`) it
+/// replaces the kept table instead.
 class KeptTable {
  public:
   KeptTable(const std::string& name, std::vector<MeasuredTable::Column> columns);
@@ -21,7 +21,7 @@ class KeptTable {
   KeptTable& operator=(const KeptTable&) = delete;
 
   void row(const std::string& name, std::initializer_list<double> values);
-  /// Rows whose names begin so cannot be measured here; those that are kept stay.
+  /// Rows whose names begin with this text cannot be measured here; the kept ones stay.
   void absent(const std::string& beginning) { absent_.push_back(beginning); }
 
  private:

@@ -1,4 +1,4 @@
-// The passes of layered reflective shadow maps, on scenes that tests make.
+// The passes of layered reflective shadow maps on scenes of tests.
 #pragma once
 
 #include <string>
@@ -29,14 +29,14 @@ inline OpacityLevels levelsOf(const Scene& scene, const OccupancyGrid& grid, con
       .out<OpacityLevels>("levels");
 }
 
-/// The opacities of a scene's surfaces, with so many voxels along its longest side.
+/// The opacity levels of a scene, with `resolution` voxels along its longest side.
 inline OpacityLevels opacityOf(const Scene& scene, int resolution) {
   return levelsOf(scene, LonePass("voxelization.average", scene)
                              .in("fragments", fragmentsIn(scene, {{"resolution", resolution}}))
                              .out<OccupancyGrid>("opacity"));
 }
 
-/// `gather` over one surface point in every pixel, at a place in the scene's own coordinates.
+/// `gather` over the same surface point in every pixel. Its position is in scene coordinates.
 class Gatherer : public LonePass {
  public:
   Gatherer(const Scene& scene, const OpacityLevels& opacity, const SeenSurface& seen,
@@ -64,7 +64,7 @@ class Gatherer : public LonePass {
   }
 };
 
-/// The scene through its own voxels and maps.
+/// `gather` for a scene with its own opacities and maps.
 inline Gatherer gathererOf(const Scene& scene, int resolution, int mapSize, const SeenSurface& seen,
                            const Settings& settings = {}, const Settings& ofLayers = {}) {
   Gatherer result(scene, opacityOf(scene, resolution), seen, settings);

@@ -1,4 +1,4 @@
-// Cells of light propagation made by hand, and the pass that propagates them.
+// Cells of light propagation with given contents, and the pass that propagates them.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ inline const double kY0 = 0.5 / std::sqrt(kPi), kY1 = std::sqrt(0.75 / kPi);
 inline const double kFarFace =
     4.0 * std::atan(1.0 / (3.0 * std::sqrt(11.0)));                  // of a cube at distance 3/2, sr
 inline const double kSideFace = (2.0 * kPi / 3.0 - kFarFace) / 4.0;  // five faces are a sixth of the sphere
-/// Flux across a face of what a cell holds: across0 c0 + across1 c1.
+/// The flux of a cell's light across a face is kAcross0 c0 + kAcross1 c1.
 inline const double kAcross0 = 2.0 * kPi / 3.0 * kY0,
                     kAcross1 = (kFarFace + 8.0 / std::sqrt(5.0) * kSideFace) * kY1;
 
@@ -30,12 +30,13 @@ inline gpu::TextureRef volume(int n, gpu::Format format) {
 
 using light_propagation_volumes::OccludedFaces;
 
-/// Light with the faces that surfaces occlude.
+/// A grid of light with its occluded faces.
 struct LitCells : ShGrid {
   OccludedFaces faces;
 };
 
-/// A grid of [-1,1]^3 with the same light in all channels; `occluded` gives xyz shares of (n+1)^3 faces.
+/// A grid over [-1,1]^3 with the same light in all channels. `occluded`: for (n+1)^3 cells, the occluded
+/// shares of their x, y and z faces.
 inline LitCells gridOf(int n, const Cells& cells, const std::vector<float>& occluded = {}) {
   ShGrid::Level level;
   level.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(n), glm::ivec3(n)};
@@ -67,7 +68,7 @@ inline void addLight(Cells& cells, int n, const glm::ivec3& cell, const glm::vec
   cells[first + 3] += static_cast<float>(meanCosine * kY1) * direction.x;
 }
 
-/// Nothing leaves backwards at this mean cosine.
+/// The mean cosine at which no flux leaves backwards.
 inline double forwardCosine() {
   return kAcross0 * kY0 / (kAcross1 * kY1);
 }
@@ -94,7 +95,7 @@ inline SceneBuilder emptyScene(float environment = 0.0f) {
   return builder;
 }
 
-/// The pass with its parameters.
+/// The pass `propagate`.
 class Propagation : public LonePass {
  public:
   explicit Propagation(const Scene& scene) : LonePass("light_propagation_volumes.propagate", scene) {}

@@ -1,4 +1,5 @@
-// Voxel fragments made by hand, of a list whose voxels are half as wide as the cells of light propagation.
+// Voxel fragments with given contents, in a list whose voxels are half as wide as the cells of light
+// propagation.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace lumivox::test {
 
-/// The octahedral words of a unit vector, as `packNormal` in shaders/common/voxel.glsl.
+/// A unit vector in octahedral encoding, as by `packNormal` in shaders/common/voxel.glsl.
 inline std::uint32_t packedOctahedron(const glm::vec3& normal) {
   glm::vec2 p = glm::vec2(normal) / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   if (normal.z < 0.0f)
@@ -20,7 +21,7 @@ inline std::uint32_t packedOctahedron(const glm::vec3& normal) {
   return glm::packSnorm2x16(p);
 }
 
-/// A square half a cell wide; `place` in cells.
+/// A fragment of a square half a cell wide. `place`: in cells.
 inline FragmentData squareAt(const glm::dvec3& place, const glm::vec3& normal,
                              const glm::vec3& albedo = glm::vec3(0.5f), float coverage = 1.0f) {
   const glm::ivec3 voxel(glm::floor(2.0 * place));
@@ -42,7 +43,7 @@ inline VoxelFragments listOver(const GridPlacement& cells, const std::vector<Fra
   list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
   list.fragments->uploadValues(std::span<const FragmentData>(fragments));
   const auto count = static_cast<std::uint32_t>(fragments.size());
-  // Two groups in a row where one is not enough, as a long list has many.
+  // At most two groups per row, so that longer lists already use several rows.
   const std::uint32_t groups = std::max(1u, (count + 63) / 64), row = std::min(groups, 2u);
   const std::array<std::uint32_t, 4> words{count, row, (groups + row - 1) / row, 1};
   list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");

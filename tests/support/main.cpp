@@ -4,7 +4,7 @@
 #include "support/cases.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-// OpenVDB loses the nodes that it had read when a file turns out to be damaged.
+// OpenVDB leaks the nodes that it has read if a file turns out to be damaged.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:openvdb::";
@@ -12,7 +12,8 @@ extern "C" const char* __lsan_default_suppressions() {
 #endif
 
 int main(int count, char** arguments) {
-  // Every test, and every program that a test starts, hears at once what the driver finds wrong.
+  // A debug context makes the driver report errors at once, in every test and in the programs that tests
+  // start.
   setenv("LUMIVOX_DEBUG_CONTEXT", "1", 0);
   lumivox::requireLibraryOf(lumivox::techniqueVersionHere());
   return lumivox::test::runCases(count, arguments);

@@ -1,4 +1,4 @@
-// Media, g-buffers and marches through them, for the tests of smoke.
+// Media, g-buffers and ray marches for the tests of smoke.
 #pragma once
 
 #include <cmath>
@@ -47,7 +47,7 @@ inline ScatteringGrid evenMedium(const glm::vec3& extinction, const glm::vec3& a
   return {{medium}};
 }
 
-/// Densities at the centres of voxels.
+/// A medium with densities sampled at the centres of voxels.
 inline ScatteringGrid varyingMedium(float extinction, float albedo, float anisotropy, const glm::vec3& low,
                                     float voxelSize, const glm::ivec3& size,
                                     const std::function<float(const glm::vec3&)>& densityAt) {
@@ -83,7 +83,7 @@ inline Medium smokeFrom(const glm::dvec3& source) {
 struct Marched {
   ImageBuffer scattered, transmittance;
 };
-/// Of `march` or `march_as_published` at full resolution.
+/// Images of `march` or `march_as_published` at full resolution.
 inline Marched marchBy(const std::string& pass, const Scene& scene, const ScatteringGrid& media,
                        const GBuffer& gbuffer, const Settings& settings) {
   LonePass march("volumetric_smoke." + pass, scene, {{"resolution", "full"}});
@@ -91,7 +91,7 @@ inline Marched marchBy(const std::string& pass, const Scene& scene, const Scatte
   if (!scene.lights.empty()) march.in("shadow", shadowsOf(scene));
   return {march.image("scattered"), march.image("transmittance")};
 }
-/// Steps looked at in their middle.
+/// `march` with samples in the middle of its steps.
 inline Marched march(const Scene& scene, const ScatteringGrid& media, const GBuffer& gbuffer, int steps,
                      const Settings& more = {}) {
   Settings settings{{"start", "middle"}, {"steps", steps}};

@@ -14,7 +14,7 @@ struct Mesh {
   std::vector<std::uint32_t> corners;
 };
 
-/// Adds an object of the mesh, of the material of that number.
+/// Adds an object with this mesh and the material of this index.
 inline Object& addMesh(Scene& scene, const Mesh& mesh, int material = 0) {
   if (scene.materials.empty()) scene.materials.emplace_back();
   Object object;
@@ -31,7 +31,7 @@ inline Object& addMesh(Scene& scene, const Mesh& mesh, int material = 0) {
   return scene.objects.back();
 }
 
-/// A sphere of rings and a vertex at each pole; every vertex once.
+/// A sphere of rings with one vertex at each pole and no duplicate vertices.
 inline Mesh sphereMesh(const glm::vec3& centre, float radius, int rings, bool inwards = false) {
   Mesh mesh;
   const int around = 2 * rings;
@@ -60,7 +60,7 @@ inline Mesh sphereMesh(const glm::vec3& centre, float radius, int rings, bool in
   return mesh;
 }
 
-/// Its front sides outwards.
+/// A box that faces outwards.
 inline Mesh boxMesh(const glm::vec3& low, const glm::vec3& high) {
   Mesh mesh;
   for (int k = 0; k < 8; ++k)

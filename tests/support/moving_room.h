@@ -1,4 +1,4 @@
-// A room with things that move in the light of one lamp, and runs of pipelines through it.
+// A room with moving objects under one light, for runs of pipelines.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline Scene movingRoom(const std::function<void(SceneBuilder&)>& light) {
 inline const glm::vec3 kSun = glm::normalize(glm::vec3(0.3f, -1.0f, 0.2f));
 
 inline void sun(SceneBuilder& builder) {
-  // Without the lid of the room.
+  // Removes the ceiling.
   std::erase_if(builder.scene.objects, [&](const Object& object) {
     const auto first = builder.scene.positions.begin() + object.firstVertex;
     return std::all_of(first, first + object.vertexCount, [](const glm::vec3& at) { return at.y > 0.99f; });
@@ -56,7 +56,7 @@ struct RoomLight {
 inline constexpr std::array kRoomLights{RoomLight{"sun", sun}, RoomLight{"lamp", lamp},
                                         RoomLight{"spot", spot}, RoomLight{"area", area}};
 
-/// Whether the last frame took this of a pass from what stands still.
+/// Whether the pass reused results for static geometry in the last frame.
 inline bool reusesStill(const PipelineExecutor& executor, const std::string& pass) {
   const std::vector<LeftOut> leftOut = executor.explain().leftOut;
   return std::any_of(leftOut.begin(), leftOut.end(), [&](const LeftOut& one) {

@@ -1,4 +1,4 @@
-// The pass that gathers along rays through bits, on what tests make by hand.
+// The pass that gathers along rays through bits, on inputs that tests make.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ class Gatherer : public LonePass {
     LonePass::with(settings);
     return *this;
   }
-  /// What arrives, rgba.
+  /// The pixels of output `arriving`, rgba.
   std::vector<float> arriving() { return floats("arriving"); }
   /// The first channel's mean over the pixels.
   double mean(const char* output) {
@@ -58,7 +58,7 @@ inline Scene underSky(float radiance) {
   return builder.scene;
 }
 
-/// Lights of a scene as samples, and a map of their layers in which all texels are alike.
+/// A reflective shadow map of a scene's lights in which all texels have the given values.
 inline ReflectiveShadowMap mapOf(const Scene& scene, int side, const glm::vec4& position,
                                  const glm::vec4& normal, const glm::vec4& flux) {
   const LightSet set = sampleLights(scene, snapshotOf(scene, 0.0), 1, side);
@@ -76,12 +76,12 @@ inline ReflectiveShadowMap mapOf(const Scene& scene, int side, const glm::vec4& 
   return map;
 }
 
-/// What a Lambert surface of this radiance sends from a square metre.
+/// The flux per square metre of a Lambert surface of this radiance.
 inline glm::vec4 fluxOf(float radiance) {
   return {glm::vec3(static_cast<float>(kPi) * radiance), 0.0f};
 }
 
-/// A light of a kind that shines from above into a room of 32 m around the origin, where metres are voxels.
+/// A room of 32 m around the origin under a light of this kind from above. Metres are voxels.
 inline Scene lightOf(const std::string& kind) {
   SceneBuilder builder;
   builder.box(glm::vec3(-16.0f), glm::vec3(16.0f), builder.lambert(0.5f), true);
@@ -96,7 +96,7 @@ inline Scene lightOf(const std::string& kind) {
   return builder.scene;
 }
 
-/// A single set voxel, and rays that all go straight up into its middle.
+/// A single occupied voxel, and rays that all go straight up into its centre.
 struct OneVoxel {
   VoxelSet set{{16, 16, 16}};
   glm::vec3 centre{8.5f, 6.5f, 8.5f};
@@ -108,8 +108,8 @@ struct OneVoxel {
         .with({{"rays", 1}, {"spread", 0}, {"hit", "centre"}, {"front", "off"}});
     return result;
   }
-  /// Whether the map lights a receiver above that looks down, by ours or as printed. No component of its ray
-  /// is 0, by which the printed walk divides.
+  /// Whether the map lights a receiver above that faces down, by our walk or as printed. No component of its
+  /// ray is 0, since the printed walk divides by them.
   glm::dvec3 down = glm::normalize(glm::dvec3(0.01, -1, 0.013)),
              above = glm::dvec3(centre) - (12.0 - 6.5) / -down.y * down;
   bool isLitFromAbove(bool asPrinted, const ReflectiveShadowMap& map, const Settings& settings = {}) const {

@@ -1,5 +1,5 @@
-// Committed scenes as near-field voxels see them: bits, what the camera sees, and the light in maps, on the
-// device and on the host.
+// Committed scenes as inputs of near-field voxels: bits, g-buffer and reflective shadow maps, on the device
+// and on the host.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace lumivox::test::near_field {
 
-/// A scene as bits and as what its camera sees.
+/// A scene with its bits and its camera's g-buffer.
 struct Seen {
   Scene scene;
   SceneSnapshot snapshot;
@@ -29,8 +29,8 @@ struct Seen {
   }
 };
 
-/// What the lights of a scene see, read back, and the radiance at a point by back-projection: one texel, both
-/// tests, written anew in double precision.
+/// A reflective shadow map read back, with the radiance at a point by back-projection: one texel, both tests,
+/// implemented again in double precision.
 class MapOnHost {
  public:
   explicit MapOnHost(const ReflectiveShadowMap& map)
@@ -51,7 +51,7 @@ class MapOnHost {
         sum += at(flux_, *texel) / (3.14159265358979323846 * normal_[4 * *texel + 3]);
     return sum;
   }
-  /// Of the first light that lights the point; none: in shadow.
+  /// The surface in the map of the first light that lights the point; nothing in shadow.
   struct Surface {
     glm::dvec3 normal, albedo;
   };
@@ -73,11 +73,11 @@ class MapOnHost {
     return {texels[4 * texel], texels[4 * texel + 1], texels[4 * texel + 2]};
   }
 
-  /// The texel in which a light shows the point.
+  /// The texel in which a light sees the point.
   std::optional<std::size_t> showing(const LightSampleData& light, const glm::dvec3& point,
                                      const glm::dvec3& toReceiver, double voxelSize) const {
     const bool parallel = light.kind == LightSampleKind::directional;
-    // The view that holds the point: the only one, or that of the six in which it is deepest.
+    // The view that contains the point: the only one, or one of six.
     int layer = light.firstView;
     for (int face = 0; face < light.viewCount; ++face) {
       const glm::dvec4 clip =

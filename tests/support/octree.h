@@ -1,4 +1,4 @@
-// Sparse voxel octrees of fragments that are made by hand, and what is in them.
+// Sparse voxel octrees of given fragments, and their contents read back.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// Which input of the cones it is, for test::cones::gather.
+/// The name of gather's input for this store, for test::cones::gather.
 inline const char* inputOf(const RadianceOctree&) {
   return "octree";
 }
@@ -40,7 +40,7 @@ inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo =
   return result;
 }
 
-/// A list over a grid of [-1,1]^3, or of that along its longest side.
+/// A list over a grid that spans [-1,1] along its longest side.
 inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size,
                              gpu::Device& on = device()) {
   VoxelFragments list;
@@ -65,7 +65,7 @@ inline VoxelOctree treeOf(const VoxelFragments& list) {
   return harness.output<VoxelOctree>("tree");
 }
 
-/// Bricks wanted, and nodes in which reading finds something.
+/// The number of wanted bricks, and of nodes in which a read finds a value.
 inline std::array<std::uint32_t, 2> wantedOf(const VoxelOctree& tree) {
   const auto words = tree.levels->downloadValues<std::uint32_t>();
   return {words.at(0), words.at(1)};
@@ -75,7 +75,8 @@ inline Cell cellOf(const glm::ivec3& place) {
   return {place.x, place.y, place.z};
 }
 
-/// Bytes of a store of floats that cones read: bricks, what finds them, their places and ranks.
+/// Bytes that cones read of a store of floats: bricks with their positions, the eight bricks around each
+/// node, and the ranks that find both.
 inline std::uint64_t storeBytes(const VoxelOctree& tree) {
   constexpr std::uint64_t kBrick = VoxelOctree::kBrickVoxels * 4 * sizeof(float);
   return wantedOf(tree)[0] * (kBrick + VoxelOctree::kBrickBytes) +
@@ -131,7 +132,7 @@ inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* o
   return filter.output<RadianceOctree>("mips");
 }
 
-/// The voxels of every brick of a level: by the node's place, x first.
+/// The voxels of every brick of a level, x fastest, by the node's position.
 inline std::map<Cell, std::array<glm::vec4, 8>> bricksOf(const RadianceOctree& octree, int level,
                                                          int face = 0) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
@@ -150,7 +151,7 @@ inline std::map<Cell, std::array<glm::vec4, 8>> bricksOf(const RadianceOctree& o
   return result;
 }
 
-/// Fragments of all voxels of a grid for which `fill` gives an opacity above 0, in w.
+/// Fragments in all voxels of a grid for which `fill` gives an opacity, in w, above 0.
 inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
                                                 const std::function<glm::vec4(const glm::ivec3&)>& fill) {
   std::vector<FragmentData> result;
@@ -163,8 +164,8 @@ inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
   return result;
 }
 
-/// An octree over a grid of [-1,1]^3 with all levels, whose finest voxels `fill` gives by face and voxel, as
-/// cones::makeDirections takes them; only where it is above 0 for some face there are leaves.
+/// An octree over a grid of [-1,1]^3 with all levels. `fill` gives the finest voxels by face and voxel, as
+/// for cones::makeDirections. Leaves exist only where the opacity of some face is above 0.
 inline RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int, int, int, int)>& fill,
                                const char* faces = "six", const char* opacity = "facing") {
   const auto isSomething = [&](const glm::ivec3& at) {
@@ -192,7 +193,7 @@ inline RadianceOctree octreeOf(int resolution, const std::function<glm::vec4(int
   return filteredOctree(octree, opacity);
 }
 
-/// The nodes whose bricks, of the voxels 2n to 2n + 2, hold one of these.
+/// The nodes n whose bricks, of the voxels 2n to 2n + 2, contain one of these voxels.
 inline std::set<Cell> nodesWith(const std::set<Cell>& voxels, int nodesAlong) {
   std::set<Cell> result;
   for (const Cell& voxel : voxels)
@@ -209,7 +210,7 @@ inline std::set<Cell> nodesWith(const std::set<Cell>& voxels, int nodesAlong) {
   return result;
 }
 
-/// Voxels of a sphere's surface, some of them several times.
+/// Fragments in the voxels of a sphere's surface; some voxels have two.
 inline std::vector<FragmentData> shell(const glm::ivec3& size) {
   std::vector<FragmentData> result;
   for (int z = 0; z < size.z; ++z)

@@ -9,11 +9,11 @@
 namespace lumivox::test {
 namespace {
 
-// CSS pixels: the desk's first screen is what a reader sees first; a phone of a common size; A4 between
+// Sizes in CSS pixels: the first screen of a desktop, a tablet, a phone of a common size, and A4 between
 // margins of 1 cm.
 constexpr int kDesk[] = {1400, 900}, kTablet[] = {800, 900}, kPhone[] = {390, 844}, kPaper[] = {718, 1000};
 
-/// Of the page as it opens.
+/// Measures the page as it opens.
 constexpr const char* kFirstScreen = R"js(
 (async () => {
   await new Promise(done => requestAnimationFrame(() => setTimeout(done, 50)));
@@ -25,7 +25,7 @@ constexpr const char* kFirstScreen = R"js(
 })()
 )js";
 
-/// Runs in the page and gives back what it found.
+/// Runs in the page and returns its findings.
 constexpr const char* kProbe = R"js(
 (async () => {
   const found = { canvases: 0, charts: 0, tables: 0, rows: 0, images: 0, controls: [], files: [], links: 0, problems: [] };
@@ -164,8 +164,8 @@ constexpr const char* kProbe = R"js(
 })()
 )js";
 
-/// The widest element beyond the window's width that does not scroll by itself, or nothing. Charts follow the
-/// window some frames later.
+/// The element that exceeds the window's width the most without scrolling by itself, or nothing. Charts adapt
+/// to the window some frames later.
 constexpr const char* kOverflow = R"js(
 (async () => {
   const isWide = () => document.documentElement.scrollWidth > document.documentElement.clientWidth;
@@ -185,7 +185,7 @@ constexpr const char* kOverflow = R"js(
 })()
 )js";
 
-/// Texts and images that lie upon each other, and texts that are cut.
+/// Finds texts and images that overlap, and texts that are cut off.
 constexpr const char* kLayout = R"js(
 (() => {
   scrollTo(0, 0);
@@ -236,7 +236,7 @@ constexpr const char* kLayout = R"js(
 })()
 )js";
 
-/// Texts that hardly differ from what is behind them (WCAG 2: 4.5 to 1 for small letters).
+/// Finds texts with too little contrast to their background (WCAG 2: 4.5 to 1 for small text).
 constexpr const char* kContrast = R"js(
 (() => {
   const numbers = colour => (colour.match(/[\d.]+/g) || []).map(Number);

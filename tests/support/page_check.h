@@ -1,4 +1,4 @@
-// Defects of a page, as a browser without a network sees it: any page of the laboratory.
+// Finds defects of any page of the laboratory in a browser without a network.
 #pragma once
 
 #include <filesystem>
@@ -11,34 +11,33 @@ namespace lumivox::test {
 
 struct PageFindings {
   std::size_t canvases = 0, charts = 0, tables = 0, rows = 0, images = 0, links = 0;
-  /// Of the page as it opens: its height in a window of 1400 x 900, and where the first chart and the first
-  /// image end there or in one of 800 x 900, whichever is later, CSS pixels; infinite when there is none or
-  /// it is folded.
+  /// The page as it opens, in CSS pixels. height: in a window of 1400 x 900. firstChartEnds, firstImageEnds:
+  /// the lower end of the first chart and image, the larger value of the windows 1400 x 900 and 800 x 900;
+  /// infinite if there is none or it is folded.
   double height = 0.0, firstChartEnds = 0.0, firstImageEnds = 0.0;
   struct Control {
     std::string name;         ///< its tag and attributes
     bool slider = false;      ///< else a choice
-    std::size_t changed = 0;  ///< pixels of the canvases that were other ones at its ends or other choices
+    std::size_t changed = 0;  ///< pixels of the canvases that differ between its ends or choices
   };
   std::vector<Control> controls;
-  /// Sentences, each with the element: a script's error, a blank canvas, a chart without a point in it, a
-  /// control that changes nothing, a table without rows or with a cell like "undefined", an image that does
-  /// not show, a link to nowhere, a request to elsewhere, a body wider than the window (1400, 800 and 390
-  /// pixels, and a sheet of paper), texts or images that lie upon each other, a text that is cut, a caption
-  /// that is broken within a word, a head that
-  /// does not sort, arrow keys that tell no point, a control without a name, a text that is hardly darker or
-  /// lighter than what is behind it (on a light and on a dark page).
+  /// Sentences, each with the element. Scripts and data: an error, a blank canvas, a chart without points, a
+  /// table without rows or with a cell like "undefined", an image that does not show, a broken link, an
+  /// external request. Layout: a body wider than the window (1400, 800 and 390 pixels, and a sheet of paper),
+  /// texts or images that overlap, a text that is cut off, a caption that breaks within a word, too little
+  /// contrast of a text (on a light and on a dark page). Use: a control that changes nothing or has no name,
+  /// a table head that does not sort, arrow keys that select no point.
   std::vector<std::string> problems;
 
-  bool hasProblem(const std::string& part) const;  ///< some sentence contains it
+  bool hasProblem(const std::string& part) const;  ///< whether a sentence contains it
   std::string text() const;                        ///< all problems, one a line
 };
 
-/// Opens all details, moves every slider, tries every choice and box and sorts every table. The page's file
-/// stays as it is.
+/// Opens all details, moves every slider, tries every choice and box, and sorts every table. Does not change
+/// the page's file.
 PageFindings checkPage(Browser& browser, const std::filesystem::path& page);
 
-/// The first place of the text where it would load something from elsewhere; empty: nowhere.
+/// The first part of the text that would load an external resource; empty if there is none.
 std::string externalLoad(const std::string& html);
 
 }  // namespace lumivox::test

@@ -1,6 +1,6 @@
 "use strict";
-// Draws a page without a browser: its scripts run before a document that knows as much of the DOM as the pages use, and what they
-// made is told as JSON: texts, tables, images, links, charts, controls, and what went wrong.
+// Draws a page without a browser: its scripts run on a document with the part of the DOM that the pages use. Prints the result as
+// JSON: texts, tables, images, links, charts, controls and problems.
 // node page_dom.js page.html
 const fs = require("fs"), vm = require("vm");
 
@@ -36,7 +36,7 @@ class Element {
       node.parent = this;
       this.children.push(node);
     }
-    // The first choice is the chosen one, or the one that says so.
+    // The selected choice, or else the first one.
     if (this.tagName === "SELECT" && this.children.length > 0)
       this.value = (this.children.find(one => "selected" in one.attributes) || this.children[0]).attributes.value;
   }
@@ -53,7 +53,7 @@ class Element {
   }
   get textContent() { return this.children.map(child => child.textContent).join(""); }
   set textContent(text) { this.children = [new Text(text)]; }
-  /** Without what is hidden. */
+  /** The text without hidden elements. */
   get shownText() {
     return this.hidden ? "" : this.children.map(child => child instanceof Element ? child.shownText : child.textContent).join("");
   }
@@ -93,7 +93,7 @@ async function main(file) {
       if (!/^data:image\/png;base64,[A-Za-z0-9+/]+=*$/.test(this.src || "")) throw new Error("no image: " + String(this.src).slice(0, 60));
     }
   }
-  // Of Chart.js as much as it is asked for; it is not run itself, which takes a real canvas.
+  // The part of Chart.js that the pages use. Chart.js itself needs a real canvas and is not run.
   class Chart {
     constructor(canvas, configuration) {
       Object.assign(this, { canvas, configuration });
@@ -116,7 +116,7 @@ async function main(file) {
   }
   await settle();
 
-  // What the plugin for names writes on a plot of 600 x 400, where the points lie evenly between the ends of their axes.
+  // The names that the plugin writes on a plot of 600 x 400, with linear or logarithmic axes from the least to the largest value.
   const namesAt = ({ data, plugins, options }) => {
     const names = [], plugin = (plugins || []).find(one => one.id === "pointNames");
     const points = data.datasets.filter(set => set.pointRadius !== 0).flatMap(set => set.data);
@@ -138,7 +138,7 @@ async function main(file) {
     return { ...canvas.attributes, points: numbers.length, labels: configuration.data.datasets.map(set => set.label),
              names: namesAt(configuration) };
   });
-  // Every control changes what is shown.
+  // Every control must change the text, a chart or a canvas.
   const seen = () => JSON.stringify([body.shownText, charts.map(one => [one.configuration.data, one.configuration.options.scales]),
                                      body.tag("canvas").map(canvas => canvas.calls.slice(-8))]);
   const controls = [];
@@ -146,7 +146,7 @@ async function main(file) {
     const box = control.attributes.type === "checkbox", at = box ? control.checked : control.value;
     const values = box ? [!at] : control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
       : control.tag("option").map(option => option.attributes.value).filter(value => value !== at);
-    // Drawings are told apart by the images that are drawn.
+    // Drawings are compared by the images that they draw.
     body.tag("canvas").forEach(canvas => { canvas.calls.length = 0; });
     let before = seen(), changed = 0;
     for (const value of values) {
@@ -162,7 +162,7 @@ async function main(file) {
     controls.push({ kind: control.tagName.toLowerCase(), values: values.length, changed });
   }
 
-  // Sorting changes the order of rows, and once more brings it back to the other end.
+  // Sorting must change the order of rows, and a second click must reverse it.
   for (const table of body.tag("table")) {
     const order = () => table.tag("tbody")[0].children.map(row => row.textContent).join("\n");
     const buttons = table.tag("button");
@@ -191,7 +191,7 @@ async function main(file) {
   const links = body.tag("a").map(link => link.attributes.href);
   for (const href of links)
     if (href && href.startsWith("#") && !ids.includes(href.slice(1))) problems.push("a link leads nowhere: " + href);
-  // Plots to save: texts of SVG in which every element ends.
+  // Plots to save must be well-formed SVG.
   const svgs = links.filter(href => href && href.startsWith("data:image/svg+xml")).map(href => decodeURIComponent(href.slice(href.indexOf(",") + 1)));
   for (const svg of svgs) {
     const open = [];

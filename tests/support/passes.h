@@ -1,4 +1,5 @@
-// One pass alone, and what tests give it: parameters, textures, buffers, g-buffers; and what frames tell.
+// Runs one pass alone on inputs that tests make (parameters, textures, buffers, g-buffers), and reads the
+// records of frames.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +33,7 @@ class Setting {
     std::visit([&](const auto& value) { harness.setParameter(name_, value); }, value_);
   }
   const std::string& name() const { return name_; }
-  /// As a pipeline has it: "name value".
+  /// As in a pipeline text: "name value".
   std::string text() const {
     std::ostringstream result;
     std::visit([&](const auto& value) { result << name_ << ' ' << value; }, value_);
@@ -45,7 +46,7 @@ class Setting {
 };
 using Settings = std::vector<Setting>;
 
-/// The pass "technique.pass" over a scene, of which it keeps a copy, at a time.
+/// The pass "technique.pass" on a copy of a scene at a time.
 class LonePass {
  public:
   LonePass(const std::string& name, const Scene& scene, const Settings& settings = {}, double time = 0.0)
@@ -73,7 +74,7 @@ class LonePass {
     ran_ = true;
     return *this;
   }
-  /// Runs the pass where something was given to it since it last ran.
+  /// An output of the pass, which runs first if an input or parameter was set since its last run.
   template <class Port>
   const Port& out(const std::string& output) {
     if (!ran_) run();
@@ -88,7 +89,7 @@ class LonePass {
   PassHarness& harness() { return *harness_; }
 
  private:
-  std::unique_ptr<Scene> scene_;  // to which the harness refers
+  std::unique_ptr<Scene> scene_;  // the harness refers to it
   std::unique_ptr<PassHarness> harness_;
   bool ran_ = false;
 };
@@ -99,7 +100,7 @@ inline GBuffer gbufferOf(const Scene& scene, double time = 0.0) {
 inline ShadowMap shadowsOf(const Scene& scene, const Settings& settings = {}) {
   return LonePass("direct_lighting.shadow_map", scene, settings).out<ShadowMap>("depth");
 }
-/// Of the conservative voxelizer.
+/// The fragments of the conservative voxelizer.
 inline VoxelFragments fragmentsIn(const Scene& scene, const Settings& settings = {}) {
   return LonePass("voxelization.conservative", scene, settings).out<VoxelFragments>("fragments");
 }
@@ -130,7 +131,7 @@ inline gpu::TextureRef textureOf(const gpu::TextureDescription& description,
   texture->uploadFloats(0, values);
   return texture;
 }
-/// `value(x, y)`, a vec4, in each pixel.
+/// A texture with `value(x, y)`, a vec4, in each pixel.
 template <class Value>
 gpu::TextureRef pixelsWhere(const glm::ivec2& size, const Value& value) {
   std::vector<float> values;
@@ -149,14 +150,14 @@ gpu::BufferRef bufferOf(const std::vector<T>& values) {
   return buffer;
 }
 
-/// What one pixel sees; nothing where it does not hit.
+/// The surface that a pixel sees; nothing if it sees none.
 struct SeenSurface {
   glm::vec3 position{0.0f}, normal{0, 1, 0};
   glm::vec3 diffuse{1.0f};
   glm::vec4 specular{0.0f};  ///< albedo, exponent
   bool hit = true;
 };
-/// `seen(x, y)` in each pixel.
+/// A g-buffer with `seen(x, y)` in each pixel.
 template <class Seen>
 GBuffer gbufferWhere(const glm::ivec2& size, const Seen& seen) {
   const auto image = [&](const auto& value) {
@@ -175,14 +176,14 @@ inline GBuffer gbufferAt(const SeenSurface& seen, const glm::ivec2& size = {8, 8
   return gbufferWhere(size, [&](int, int) { return seen; });
 }
 
-/// What a pass of a pipeline made in the last frame, of which the executor keeps the output.
+/// An output of a pass in the last frame; the executor must keep it.
 template <class Port>
 const Port& kept(const PipelineExecutor& executor, const std::string& pass, const std::string& port) {
   const auto* output = dynamic_cast<const Out<Port>*>(executor.output(pass, port));
   REQUIRE(output != nullptr);
   return output->value();
 }
-/// The passes that were not left out of a frame.
+/// The passes of a frame that were not left out.
 inline std::set<std::string> passesOf(const FrameResult& frame) {
   std::set<std::string> names;
   for (const PassRecord& pass : frame.passes) names.insert(pass.name);
@@ -192,7 +193,7 @@ inline bool ran(const FrameResult& frame, const std::string& pass) {
   return std::any_of(frame.passes.begin(), frame.passes.end(),
                      [&](const PassRecord& record) { return record.name == pass && record.ran; });
 }
-/// Whether the last frame says that it took this from before.
+/// Whether the last frame reused this from an earlier frame.
 inline bool reused(const PipelineExecutor& executor, const std::string& what) {
   const std::vector<LeftOut> all = executor.explain().leftOut;
   return std::any_of(all.begin(), all.end(), [&](const LeftOut& left) {
@@ -228,7 +229,7 @@ inline double meanOf(std::span<const float> values) {
 inline double meanOf(const ImageBuffer& image) {
   return meanOf(std::span<const float>(image.values()));
 }
-/// Root mean square of what two pictures differ by.
+/// Root mean square difference of two images.
 inline double rmsBetween(const ImageBuffer& a, const ImageBuffer& b) {
   double squares = 0.0;
   for (std::size_t i = 0; i < a.values().size(); ++i)

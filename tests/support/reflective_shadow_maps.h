@@ -1,4 +1,4 @@
-// The passes of reflective shadow maps alone, from maps and scenes that a test makes, and what comes of them.
+// Single passes of reflective shadow maps on maps and scenes that a test makes, and their results.
 #pragma once
 
 #include <string>
@@ -33,7 +33,7 @@ inline SceneBuilder closedBox(float albedo) {
   return builder;
 }
 
-/// A map of one texel a layer, each with a place, a normal with an area, and a flux.
+/// A map with one texel per layer, each with a position, a normal with an area, and a flux.
 struct Texel {
   glm::vec4 position, normal, flux;
 };
@@ -73,7 +73,8 @@ inline SurfaceLights choose(const ReflectiveShadowMap& map, const Settings& sett
       .out<SurfaceLights>("lights");
 }
 
-/// By `method` of gather, or, with `flux`, from as many chosen lights; `pass` has a g-buffer.
+/// Gathers by a `method` of the pass or, for "flux", from `samples` lights of pass `choose`. `pass` must have
+/// its g-buffer.
 inline ImageBuffer gatherBy(LonePass& pass, const ReflectiveShadowMap& map, const std::string& method,
                             int samples) {
   if (method == "flux")
@@ -83,7 +84,7 @@ inline ImageBuffer gatherBy(LonePass& pass, const ReflectiveShadowMap& map, cons
   return pass.image("diffuse");
 }
 
-/// The irradiance of a surface that faces up.
+/// The irradiance at a place whose surface faces up.
 inline glm::vec3 irradianceAt(const glm::vec3& place, const ReflectiveShadowMap& map,
                               const std::string& method, int samples, const Settings& settings = {},
                               const Scene* seen = nullptr) {

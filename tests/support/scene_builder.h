@@ -1,4 +1,4 @@
-// Scenes made by code, small enough that their light is known in closed form.
+// Scenes built in code, simple enough that their light has a closed form.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace lumivox::test {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// Options without a progress bar and without the cache.
+/// Options without progress bar and cache.
 inline ReferenceOptions quietly(int samples, int bounces = 32) {
   ReferenceOptions options;
   options.samplesPerPixel = samples;
@@ -25,11 +25,11 @@ inline ReferenceOptions quietly(int samples, int bounces = 32) {
 
 struct Estimate {
   double mean = 0.0,
-         deviation = 0.0;  ///< of the mean over all pixels and channels, from the stated variances
+         deviation = 0.0;  ///< of the mean over all pixels and channels, by the stored variances
 };
 
-/// Mean of a layer. Its channels share paths, so their errors are taken as one; those of pixels are
-/// independent.
+/// The mean of a layer. The channels share paths, so their errors count as fully correlated; those of pixels
+/// are independent.
 inline Estimate estimateOf(const LayeredImage& image, const std::string& layer) {
   const ImageBuffer& means = image.layers.at(layer);
   const ImageBuffer& variances = image.layers.at(layer + ".variance");
@@ -65,7 +65,7 @@ inline Scene litRoom(int width, int height) {
   return builder.scene;
 }
 
-/// The same surfaces, of which those that do not shine turn their other side to the front.
+/// The same scene with all surfaces flipped that do not emit.
 inline Scene turnedOver(Scene scene) {
   const auto shines = [&](const Part& part) {
     return scene.materials[static_cast<std::size_t>(part.material)].emission != glm::vec3(0.0f);
@@ -81,8 +81,8 @@ inline Scene turnedOver(Scene scene) {
   return scene;
 }
 
-/// A floor with a patch that a spot of 1 W/sr lights and, unless `bright` is 0, another that one of that
-/// intensity does.
+/// A floor with a patch under a spot of 1 W/sr and, unless `bright` is 0, another patch under a spot of
+/// `bright` W/sr.
 inline SceneBuilder floorUnderTwoSpots(float bright) {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));

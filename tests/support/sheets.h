@@ -1,4 +1,4 @@
-// One layer of voxels that covers a share of what crosses it, in every store that cones read.
+// One layer of partly opaque voxels in every store that cones read.
 #pragma once
 
 #include "support/clipmap.h"
@@ -7,7 +7,7 @@
 
 namespace lumivox::test::cones {
 
-/// Dense grids of [-1,1]^3 whose voxels reflect the albedo of a list, not filtered.
+/// An unfiltered dense grid over [-1,1]^3 whose voxels reflect the albedo of the list's fragments.
 template <class Grid>
 Grid injectedList(const char* pass, const VoxelFragments& list) {
   const Scene scene = emptyScene();
@@ -18,10 +18,10 @@ Grid injectedList(const char* pass, const VoxelFragments& list) {
   return inject.template output<Grid>("radiance");
 }
 
-/// Calls `check` with each store over [-1,1]^3, 32 voxels along a side, and its name. The layer behind the
-/// middle across `axis` (1: y, 2: z) is full of fragments whose normal is along it, with this coverage, and
-/// sends 0.5 W/(sr m^2) to both sides. Every store has it by its own injection and filter, but the clipmap,
-/// which voxelizes triangles and gets its faces by hand.
+/// Calls `check` with each store over [-1,1]^3, 32 voxels along a side, and its name. One layer across `axis`
+/// (1: y, 2: z), next to the centre, is full of fragments with this coverage and a normal along the axis. It
+/// emits 0.5 W/(sr m^2) to both sides. Every store gets it by its own injection and filter, except the
+/// clipmap, which voxelizes triangles and so gets its faces directly.
 template <class Check>
 void forSheets(int axis, float coverage, const Check& check) {
   constexpr int kVoxels = 32, kLayer = kVoxels / 2;

@@ -1,5 +1,5 @@
-// Every store that cones read, over [-1,1]^3 with the same content, made by hand: laws of cones are held over
-// all of them.
+// Every store that cones read, over [-1,1]^3 with the same given contents, so that one law is tested over all
+// stores.
 #pragma once
 
 #include <variant>
@@ -12,16 +12,16 @@ namespace lumivox::test::cones {
 using AnyStore =
     std::variant<RadianceGrid, DirectionalRadianceGrid, octree::RadianceOctree, clipmap::RadianceClipmap>;
 
-/// What a test generates stores of: GENERATE(from_range(kStoreKinds)).
+/// A kind of store, for GENERATE(from_range(kStoreKinds)).
 struct StoreKind {
   enum class Of { grid, coarseFaces, faces, octree, octreeFaces, clipmap } of;
   const char* name;
   const char* opacity = "facing";
-  /// Voxels along a side of the finest level; of a clipmap along that of each of three levels, of which the
-  /// coarsest reaches from -1 to 1.
+  /// Voxels along a side of the finest level. In a clipmap, along a side of each of its three levels, of
+  /// which the coarsest spans [-1,1].
   int resolution = 64;
   double finest() const { return of == Of::clipmap ? 0.5 / resolution : 2.0 / resolution; }
-  /// How cones may read it.
+  /// The values of parameter `reading` that suit this store.
   std::vector<const char*> readings() const {
     if (of == Of::grid || of == Of::octree) return {"layers"};
     return {"layers", "interpolated"};
@@ -37,10 +37,11 @@ inline const std::vector<StoreKind> kStoreKinds{
     {StoreKind::Of::octreeFaces, "octree of six faces", "facing", 32},
     {StoreKind::Of::clipmap, "clipmap", "facing", 32}};
 
-/// By the middle of a voxel, its width (m) and its face: radiance multiplied by the opacity, in w.
+/// The value of a voxel's face from the voxel's centre and width (m) and the face: radiance times opacity,
+/// with the opacity in w.
 using StoreFill = std::function<glm::vec4(const glm::vec3& middle, float width, int face)>;
 
-/// A store with all its levels. `levels`: of a clipmap.
+/// A store with all its levels. `levels`: settings for a clipmap.
 inline AnyStore storeOf(const StoreKind& kind, const StoreFill& fill,
                         clipmap::ClipmapSettings levels = {.levels = 3, .extent = 0.5}) {
   const auto size = static_cast<float>(kind.finest());
@@ -84,7 +85,7 @@ inline glm::vec3 alongNormal(const AnyStore& any, const glm::vec3& position, con
       [&](const auto& store) { return alongNormal(store, position, direction, exponent, settings); }, any);
 }
 
-/// The voxels of a face at a level that have opacity, as stored.
+/// The voxels of a face at a level that are not transparent, with their stored values.
 using VoxelsAt = std::map<Cell, glm::vec4>;
 inline VoxelsAt opaqueTexels(const std::vector<float>& texels, const glm::ivec3& size) {
   VoxelsAt result;

@@ -7,10 +7,10 @@
 
 namespace lumivox::test {
 
-/// The test does not apply on this machine: says so, and ctest counts it as skipped. Follow it with `return`.
+/// Reports that the test does not apply on this machine; ctest counts it as skipped. Follow it with `return`.
 void skip(const std::string& reason);
 
-/// A directory of its own that is removed at the end of the test.
+/// A new directory that the destructor removes.
 class TemporaryDirectory {
  public:
   TemporaryDirectory();

@@ -1,4 +1,4 @@
-// Elements and links of a scene, pass by pass, as tests of implicit visibility want them.
+// Elements and links of a scene, pass by pass, for tests of implicit visibility.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ using implicit_visibility::ElementLight, implicit_visibility::ElementLink, impli
     implicit_visibility::SurfaceElements, implicit_visibility::BinMapping, implicit_visibility::DirectionBins,
     implicit_visibility::BinTable;
 
-/// The three passes, one behind the other.
+/// The results of the three passes `elements`, `create_links` and `push_links`.
 struct LinkedScene {
   SurfaceElements elements;
   ElementLinks pairs, links;
@@ -45,8 +45,8 @@ inline LinkedScene linked(const Scene& scene, const LinkSettings& settings = {},
   return made;
 }
 
-/// Projected solid angle of a bin of a leaf, by which its light counts; positive above the plane, negative
-/// below it.
+/// The weight of a direction bin's light at a leaf: its projected solid angle, positive above the leaf's
+/// plane and negative below.
 class BinWeights {
  public:
   explicit BinWeights(const ElementLinks& links) : table_(DirectionBins(links.bins, links.mapping)) {}

@@ -13,7 +13,7 @@ inline gpu::Device& device() {
   return instance;
 }
 
-/// The built ones, unless LUMIVOX_TECHNIQUES names others, as tests/mutation/mutate does.
+/// The built techniques, unless LUMIVOX_TECHNIQUES names others, as tests/mutation/mutate does.
 inline TechniqueSet& techniques() {
   static TechniqueSet instance(TechniqueSet::defaultDirectories({}));
   return instance;

@@ -1,4 +1,4 @@
-// Passes of thesis_cone_tracing over stores made by hand.
+// Passes of thesis_cone_tracing over stores with given contents.
 #pragma once
 
 #include <map>
@@ -17,12 +17,12 @@ using octree::listOf;
 using thesis_cone_tracing::OctreeBricks;
 using thesis_cone_tracing::OctreeNodes;
 
-/// A pass of the technique in an empty scene.
+/// A pass of the technique on a scene.
 inline PassHarness passOf(const char* name, const Scene& scene) {
   return PassHarness(device(), techniques(), "thesis_cone_tracing", name, scene, snapshotOf(scene, 0.0));
 }
 
-/// Coarser levels as printed.
+/// Filters the coarser levels as printed.
 inline RadianceGrid mipmapped(const RadianceGrid& finest, bool drawn = false) {
   const Scene scene = cones::emptyScene();
   PassHarness mipmap = passOf("mipmap", scene);
@@ -55,7 +55,7 @@ inline const char* inputOf(const OctreeBricks&) {
   return "octree";
 }
 
-/// What `gather` gives for a g-buffer, diffuse or glossy.
+/// An output of `gather` for a g-buffer: "diffuse" or "glossy".
 template <class Store>
 ImageBuffer gathered(const Scene& scene, const Store& store, const GBuffer& gbuffer, const char* output,
                      const GatherSettings& settings) {
@@ -86,7 +86,7 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& store, const glm::vec3& 
       scene, store, cones::surfacePoint(position, normal, glm::vec3(0.0f), specular), "glossy", settings));
 }
 
-/// What the one cone of a mirroring lobe along a direction sees.
+/// The radiance that the cone of a mirroring lobe gathers along a direction.
 template <class Store>
 glm::vec3 alongDirection(const Store& store, const glm::vec3& position, const glm::vec3& direction,
                          float exponent, const GatherSettings& settings = {}) {
@@ -124,10 +124,10 @@ inline OctreeBricks mipmapped(const OctreeBricks& leaves, const char* borders = 
   return mipmap.output<OctreeBricks>("mips");
 }
 
-/// The voxels of a brick, x first.
+/// The voxels of a brick, x fastest.
 using Brick = std::array<glm::vec4, 27>;
 
-/// Every brick of a level, by its node's place.
+/// Every brick of a level, by its node's position.
 inline std::map<Cell, Brick> bricksOf(const OctreeBricks& octree, int level) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
   const glm::ivec3 size = octree.poolSize();

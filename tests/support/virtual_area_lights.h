@@ -1,4 +1,4 @@
-// Points, lights and averaged lights made by hand, and the passes of virtual area lights over them.
+// Points, lights and averaged lights with given values, and the passes of virtual area lights over them.
 #pragma once
 
 #include <algorithm>
@@ -26,14 +26,14 @@ struct SparsePoint {
   int model = 0;
 };
 
-/// A disc that shines.
+/// A disc that emits.
 struct DiscLight {
   glm::vec3 position{0.0f}, normal{0, -1, 0};
   float area = 0.01f;
   glm::vec3 exitance{1.0f};
 };
 
-/// One for each of the first points.
+/// A texture with one texel for each point, in their order.
 inline gpu::TextureRef texels(std::vector<glm::vec4> values) {
   const glm::ivec2 size = SurfacePoints::sizeFor(static_cast<int>(values.size()));
   values.resize(static_cast<std::size_t>(size.x * size.y), glm::vec4(0.0f));
@@ -42,7 +42,7 @@ inline gpu::TextureRef texels(std::vector<glm::vec4> values) {
   return texture;
 }
 
-/// Light of the diffuse lobe alone, from one place for each point, or from far overhead.
+/// Light of the diffuse lobe alone, from one position for each point. lightOverhead(): from far above.
 inline SparseLight diffuseLight(const std::vector<glm::vec4>& lights, const std::vector<glm::vec4>& places) {
   return {texels(lights), texels(places), nullptr, nullptr};
 }
@@ -50,7 +50,7 @@ inline SparseLight lightOverhead(const std::vector<glm::vec4>& lights) {
   return diffuseLight(lights, std::vector<glm::vec4>(lights.size(), glm::vec4(0, 1e4, 0, 1)));
 }
 
-/// Every point is a candidate everywhere.
+/// Sparse points, each a candidate neighbour everywhere.
 inline SurfacePoints pointsOf(const std::vector<SparsePoint>& points, float spacing = 0.1f,
                               int neighbours = 8) {
   std::vector<glm::vec4> positions, normals, radii;
@@ -86,7 +86,7 @@ inline SurfaceLights lightsOf(const std::vector<DiscLight>& lights) {
   return {bufferOf(values), static_cast<int>(lights.size())};
 }
 
-/// All walls of a cube of side 2 around the origin, n x n lights each, which shine inwards.
+/// Lights on all walls of a cube of side 2 around the origin, n x n each, which emit inwards.
 inline std::vector<DiscLight> shiningBox(int n) {
   std::vector<DiscLight> lights;
   const float side = 2.0f / static_cast<float>(n);
@@ -103,8 +103,7 @@ inline std::vector<DiscLight> shiningBox(int n) {
   return lights;
 }
 
-/// Runs one pass of the technique over inputs made by hand; the camera looks from (0, 1, 0) at a glossy
-/// floor.
+/// Runs single passes of the technique on given inputs. The camera looks from (0, 1, 0) at a glossy floor.
 class SparsePasses {
  public:
   explicit SparsePasses(glm::dvec3 eye = {0, 1, 0}, int side = 8) {
@@ -127,7 +126,7 @@ class SparsePasses {
   SparseLight occlude(const SurfacePoints& points, const SparseLight& light, const Settings& settings = {}) {
     return over("occlude", points, light, settings);
   }
-  /// What is reflected by surfaces of albedo 1 at `seen`, one in each pixel from the upper left on.
+  /// The light reflected by surfaces of albedo 1 at `seen`, one per pixel from the upper left on.
   std::pair<ImageBuffer, ImageBuffer> apply(const SurfacePoints& points, const SparseLight& light,
                                             const std::vector<SparsePoint>& seen,
                                             const Settings& settings = {}) {
@@ -172,7 +171,7 @@ class SparsePasses {
   SceneBuilder builder_;
 };
 
-/// The texels of the first points.
+/// The values of the first `count` points.
 inline std::vector<glm::vec4> valuesOf(const gpu::TextureRef& texture, std::size_t count) {
   const std::vector<float> floats = texture->downloadFloats(0);
   std::vector<glm::vec4> result;

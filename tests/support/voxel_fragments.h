@@ -1,4 +1,4 @@
-// Lists of voxel fragments, read back and taken apart.
+// Lists of voxel fragments, read back and unpacked.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct FragmentData {
             static_cast<int>(packed >> 20 & 1023)};
   }
   glm::ivec3 cell() const { return tenBits(voxel); }
-  /// In voxels.
+  /// Position in the grid, in voxels.
   glm::dvec3 position() const { return glm::dvec3(cell()) + glm::dvec3(tenBits(offset)) / 1023.0; }
   glm::vec3 albedo() const {
     return glm::vec3(glm::unpackHalf2x16(albedoRg), glm::unpackHalf2x16(albedoBCoverage).x);
@@ -48,7 +48,7 @@ struct FragmentData {
   }
 };
 
-/// All fragments in a fixed order, since a list has none.
+/// All fragments in sorted order, since the order of a list varies.
 inline std::vector<FragmentData> fragmentsOf(const VoxelFragments& list) {
   const std::uint32_t count = list.count->downloadValues<std::uint32_t>()[0];
   std::vector<FragmentData> fragments = list.fragments->downloadValues<FragmentData>();
@@ -90,7 +90,7 @@ inline std::set<Cell> cellsOf(const BinaryGrid& grid, int level = 0) {
   return cells;
 }
 
-/// A list with what follows from it.
+/// A list with its fragments and cells.
 struct Voxels {
   GridPlacement grid;
   std::vector<FragmentData> fragments;
@@ -100,11 +100,11 @@ struct Voxels {
 inline Voxels voxelsOf(const VoxelFragments& list) {
   const auto words = list.count->downloadValues<std::uint32_t>();
   REQUIRE(words.at(0) <= list.capacity);
-  // A dispatch over the list must reach all of it.
+  // An indirect dispatch must cover the whole list.
   REQUIRE(std::uint64_t{words.at(1)} * words.at(2) * words.at(3) *
               static_cast<std::uint64_t>(list.workGroupSize) >=
           words.at(0));
-  // In a single row no group is idle.
+  // With a single row of groups, no group is idle.
   const auto size = static_cast<std::uint32_t>(list.workGroupSize);
   if (words.at(2) == 1) REQUIRE(words.at(1) == std::max((words.at(0) + size - 1) / size, 1u));
   Voxels result{list.grid, fragmentsOf(list), {}};

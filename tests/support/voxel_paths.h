@@ -1,4 +1,4 @@
-// The pass that traces paths through bits, on what tests make by hand.
+// The pass that traces paths through bits, on inputs that tests make.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@ namespace lumivox::test::voxel_paths {
 
 using near_field::Gatherer;
 
-/// `specular`: albedo and exponent of a Phong lobe; without one the surface has none.
+/// The pass over one surface point. `specular`: albedo and exponent of its Phong lobe, if it has one.
 inline Gatherer tracer(const BinaryGrid& bits, const glm::vec3& position, const glm::vec3& normal,
                        const Scene& scene = SceneBuilder().scene, float diffuse = 0.5f,
                        const glm::vec4& specular = glm::vec4(0.0f)) {
@@ -21,7 +21,7 @@ inline Gatherer tracer(const BinaryGrid& bits, const glm::vec3& position, const 
   return result;
 }
 
-/// The shell of a cube of so many voxels a side.
+/// The shell of a cube of `side` voxels.
 inline VoxelSet shellOf(int side) {
   VoxelSet set({side, side, side});
   for (int x = 0; x < side; ++x)
@@ -31,7 +31,7 @@ inline VoxelSet shellOf(int side) {
   return set;
 }
 
-/// Of each voxel, x first.
+/// The attributes of each voxel, x fastest, with the normal that the function gives.
 inline AttributeGrid attributesWhere(const glm::ivec3& size, float albedo,
                                      const std::function<glm::vec3(const glm::ivec3&)>& normalAt) {
   std::vector<float> albedos, normals;
@@ -53,7 +53,7 @@ inline AttributeGrid attributesWhere(const glm::ivec3& size, float albedo,
           nullptr};
 }
 
-/// Voxels of the shell look inwards, and reflect so much.
+/// Attributes of the shell: normals that point inwards, and this albedo.
 inline AttributeGrid attributesOfShell(int side, float albedo) {
   return attributesWhere(glm::ivec3(side), albedo, [side](const glm::ivec3& at) {
     glm::vec3 normal(0.0f);
@@ -65,7 +65,7 @@ inline AttributeGrid attributesOfShell(int side, float albedo) {
   });
 }
 
-/// A map that makes every surface around shine with this radiance and reflect so much.
+/// A map in which every surface around has this reflected radiance and albedo.
 inline ReflectiveShadowMap shiningAll(float radiance, float albedo, const glm::dvec3& from) {
   SceneBuilder builder;
   builder.box(glm::vec3(-1.0f), glm::vec3(1.0f), builder.lambert(0.5f), true);

@@ -12,9 +12,9 @@ namespace lumivox::test {
 struct Voxelizer {
   std::string pass;
   Settings settings = {};
-  bool columns = true;     ///< looks at the middle of a column; else at points anywhere
-  bool attributes = true;  ///< else all is black
-  bool sums = false;       ///< the coverages of fragments add up; else each is judged by itself
+  bool columns = true;     ///< samples triangles at the centres of voxel columns; else at arbitrary points
+  bool attributes = true;  ///< else all fragments are black
+  bool sums = false;       ///< the coverages of a voxel's fragments add up; else each counts alone
   std::string words() const {
     std::string result;
     for (const Setting& one : settings) result += one.text() + ' ';
@@ -41,7 +41,7 @@ inline Voxels voxelized(const Scene& scene, const Voxelizer& by, int resolution)
   return voxelized(scene, by, {{"resolution", resolution}});
 }
 
-/// Each level of the stacks holds what the finer one holds, and keeps the depth.
+/// Checks that each level of the stacks is the union of the finer one, at full depth.
 inline void checkLevelsAreUnions(const BinaryGrid& grid) {
   const gpu::TextureDescription& description = grid.stacks->description();
   CHECK(description.levels == gpu::fullLevelCount(grid.grid.resolution.x, grid.grid.resolution.y));
@@ -57,7 +57,7 @@ inline void checkLevelsAreUnions(const BinaryGrid& grid) {
   }
 }
 
-/// Frames of a pipeline of one voxelizer, whose fragments stay readable.
+/// Frames of a pipeline with one voxelizer, whose fragments are kept for reading.
 class VoxelizedFrames {
  public:
   VoxelizedFrames(const Scene& scene, const Voxelizer& by, const std::string& words,

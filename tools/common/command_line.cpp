@@ -27,7 +27,8 @@ const CLI::App& programOf(const CLI::App& command) {
   return *app;
 }
 
-/// Help of a command ends with the options of every command, and lines are as wide as the terminal.
+/// Help that is wrapped to the width of the terminal; that of a command ends with the options of every
+/// command.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_footer(const CLI::App* app) const override {
@@ -81,7 +82,7 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
                      fmt::join(known, ", "), suggestion(word, known));
 }
 
-/// What is wrong with the words that no command took; empty when all were taken.
+/// The fault of the words that no command took; empty if all were taken.
 std::string wrongWords(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
@@ -100,7 +101,7 @@ std::string wrongWords(const CLI::App& app) {
   return {};
 }
 
-/// A number and a unit of the dimension, in base units; nothing for anything else.
+/// The value, in base units, of a number with a unit of the dimension; nothing for any other text.
 std::optional<double> quantityOf(const std::string& text, const dsl::Dimension& dimension, bool needsUnit) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -257,7 +258,7 @@ std::optional<int> parseOptions(CLI::App& app, const GlobalOptions& global, int 
 }
 
 int guarded(const std::string& program, const std::function<int()>& work) {
-  // However the work ends.
+  // Runs on every way out of this function.
   struct Repeated {
     ~Repeated() { logRepeatedWarnings(); }
   } repeated;

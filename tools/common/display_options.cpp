@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "-1.5" or "-1.5 EV"; nothing where it is no number or beyond the largest exposure.
+/// Reads "-1.5" or "-1.5 EV"; nothing for other texts and beyond the largest exposure.
 std::optional<double> numberOf(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -25,7 +25,7 @@ std::optional<double> numberOf(const std::string& text) {
   return number;
 }
 
-/// EV that a header tells.
+/// The exposure, in EV, that a file's header states.
 std::optional<double> keptExposure(const fs::path& file,
                                    const std::map<std::string, std::string>& attributes) {
   const auto kept = attributes.find(kExposureAttribute);

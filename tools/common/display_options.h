@@ -1,4 +1,4 @@
-// How images are displayed, in every command that makes one or takes a measure that depends on it.
+// Display options of every command that makes an image, or measures an error that depends on its display.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,31 +11,33 @@
 
 namespace lumivox::command {
 
-/// Of an EXR or PNG file: EV at which its scene is displayed.
+/// Attribute of EXR and PNG files: the exposure, in EV, at which the scene is displayed.
 inline constexpr const char* kExposureAttribute = "lumivox.exposure_ev";
-/// How files and options write EV.
+/// The text of an exposure, in EV, in files and options.
 std::string exposureNumber(double exposure);
 
 struct DisplayOptions {
   std::string exposure = "auto", tone = name(kShownTone);
 
   void addTo(CLI::App& app);
-  void addExposureTo(CLI::App& app);  ///< alone: of commands that only measure
+  void addExposureTo(CLI::App& app);  ///< for commands that measure and display nothing
   void addToneTo(CLI::App& app);
   bool isGiven() const { return exposure != "auto"; }
-  /// EV; nothing for auto; of an image that is named, the one that it is shown at. Error otherwise.
+  /// The exposure in EV, of an image file if the option names one; nothing for auto. Error for any other
+  /// text.
   std::optional<double> given() const;
   Tone toneCurve() const { return toneNamed(tone); }
 };
 
-/// EV that an image without its scene is shown at, and where it comes from.
+/// The exposure, in EV, of an image without its scene, and its source in words.
 struct FoundExposure {
   double exposure = 0.0;
   std::string from;
 };
 
-/// That of its header; else of all pixels of the layer `full`, the main layer or `otherwise`, the first of
-/// these that is radiance: which of them emit is not known. `file` is named in messages.
+/// The exposure in the image's header; else that of one layer, computed from all its pixels, since an image
+/// does not tell which of them emit. The layer is the first of `full`, the main layer and `otherwise` that
+/// has 1, 3 or 4 channels. `file` is named in messages.
 FoundExposure exposureOf(const std::filesystem::path& file, const LayeredImage& image,
                          const std::string& otherwise = "");
 

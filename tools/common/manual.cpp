@@ -30,8 +30,8 @@ std::vector<std::string> flagsOf(const CLI::Option& option) {
   return flags;
 }
 
-/// Calls back with a command and the words that lead to it ("results list"; empty for the program itself),
-/// each command before those below it.
+/// Receives each command with its words ("results list"; empty for the program itself), before its
+/// subcommands.
 using Visit = std::function<void(const std::string& words, const CLI::App& command)>;
 void forEachCommand(const CLI::App& app, const Visit& visit, const std::string& words = {}) {
   visit(words, app);
@@ -43,7 +43,7 @@ std::vector<const CLI::Option*> optionsOf(const CLI::App& command) {
   return command.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
 }
 
-/// Text that troff takes as it is.
+/// Text escaped for troff.
 std::string troff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -54,7 +54,7 @@ std::string troff(const std::string& text) {
     else
       escaped += c;
   }
-  // A line that begins with a point or an apostrophe would be a request.
+  // troff would take a line that begins with a point or an apostrophe for a request.
   return !escaped.empty() && (escaped[0] == '.' || escaped[0] == '\'') ? "\\&" + escaped : escaped;
 }
 
@@ -82,7 +82,7 @@ std::string functionName(const CLI::App& app) {
   return "_" + app.get_name();
 }
 
-/// The lines of a shell's `case` that follow the typed words down to the command.
+/// The branches of a shell's `case` that find the command from the typed words.
 std::string commandCases(const CLI::App& app) {
   std::string cases;
   forEachCommand(app, [&](const std::string& words, const CLI::App&) {
@@ -91,7 +91,7 @@ std::string commandCases(const CLI::App& app) {
   return cases;
 }
 
-/// All flags of the options that take one of a few words, by the words.
+/// A branch of a shell's `case` for each flag of an option with fixed choices: `action` with the choices.
 std::string choiceCases(const CLI::App& app, const std::string& action) {
   std::string cases;
   forEachCommand(app, [&](const std::string& words, const CLI::App& command) {
@@ -131,7 +131,7 @@ std::string manualPage(const CLI::App& app, const std::string& version) {
       text += fmt::format(".SS {}\n{}\n", troff(name + " " + words), troff(command.get_description()));
     }
     for (const CLI::Option* option : optionsOf(command))
-      // Every command has its own --help; telling it once is enough.
+      // Every command has a --help of its own; it is described once.
       if (words.empty() || option->get_name() != "--help") text += optionEntry(*option);
   });
   text +=
@@ -268,7 +268,7 @@ std::string fishCompletion(const CLI::App& app) {
 }
 
 void addDescriptionOptions(CLI::App& app, const std::string& version) {
-  // CLI11 prints what is thrown so and ends well, as for --version.
+  // CLI11 prints the text of this exception and exits with 0, as for --version.
   app.add_flag_callback(
       "--print-man", [&app, version] { throw CLI::CallForVersion(manualPage(app, version), 0); },
       "print this program's manual page");

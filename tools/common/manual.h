@@ -1,5 +1,4 @@
-// A program's description of itself as a manual page and as completions for shells: written from the same
-// options that it reads.
+// A program's manual page and shell completions, generated from the options that it parses.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,12 +9,12 @@ namespace lumivox::command {
 /// A manual page (section 1, troff with the macros of man(7)) of all commands and options.
 std::string manualPage(const CLI::App& app, const std::string& version);
 
-/// A completion script: commands, options, and the words that an option may take; files elsewhere.
+/// A completion script for commands, options and the choices of an option; files everywhere else.
 std::string bashCompletion(const CLI::App& app);
 std::string zshCompletion(const CLI::App& app);
 std::string fishCompletion(const CLI::App& app);
 
-/// --print-man and --print-completion bash|zsh|fish. Call it when all commands are there.
+/// --print-man and --print-completion bash|zsh|fish. Call it after all commands were added.
 void addDescriptionOptions(CLI::App& app, const std::string& version);
 
 }  // namespace lumivox::command

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of one kind of text: its word, its ending and its folder below `scenes`.
+/// One kind of text: its word, its ending and its folder below `scenes`.
 struct TextPlace {
   const char *word, *extension, *folder;
 };
@@ -27,7 +27,7 @@ std::vector<TextPlace> placesOf(NamedText kind) {
   return {kScenes, kPipelines};
 }
 
-/// The folder `scenes` of the project here, then the one that comes with the program.
+/// The folder `scenes` of the project around the working folder, then the one installed with the program.
 std::vector<fs::path> textFolders() {
   std::vector<fs::path> folders;
   std::error_code failure;

@@ -14,25 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings that say what a file is, of all that the programs read and write.
+/// The endings of all kinds of file that the programs read and write.
 constexpr const char* kEndings[] = {
     ".exr",          ".png",  ".jpg",  ".jpeg",  ".tga",   ".svg",      ".mp4",   ".html",
     ".md",           ".csv",  ".json", ".vdb",   ".scene", ".pipeline", ".sweep", ".view",
     ".reproduction", ".obj",  ".mtl",  ".gz",    ".so",    ".txt",      ".db",    ".sqlite",
     ".sqlite3",      ".glsl", ".comp", ".blend", ".log",   ".xml",      ".dot",   ".gv"};
 
-/// Whether both names lead to one regular file that is there. Devices take what is written to them, and keep
-/// nothing.
+/// Whether both names lead to the same existing regular file. Devices such as /dev/null do not count: they
+/// keep nothing.
 bool isOneFile(const fs::path& one, const fs::path& other) {
   std::error_code failure;
   return fs::is_regular_file(one, failure) && fs::equivalent(one, other, failure);
 }
 
-/// The same of files that are not there yet.
+/// The same, also for files that do not exist yet.
 bool willBeOneFile(const fs::path& one, const fs::path& other) {
   std::error_code failure;
   if (fs::exists(one, failure) || fs::exists(other, failure)) return isOneFile(one, other);
-  // Absolute first: of a name alone nothing is there to be made canonical.
+  // weakly_canonical() needs an existing beginning of the path, which a file name alone does not have.
   const fs::path first = fs::weakly_canonical(fs::absolute(one, failure), failure),
                  second = fs::weakly_canonical(fs::absolute(other, failure), failure);
   return !first.empty() && first == second;

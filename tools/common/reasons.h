@@ -1,4 +1,4 @@
-// What runs leave out, grouped by why.
+// The work that a run leaves out, grouped by reason.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lumivox::command {
 
-/// What is left out for the same reason, at the same level.
+/// Everything that is left out for one reason at one level.
 struct Reason {
   LeftOut::Level level;
   std::string why;
@@ -18,7 +18,7 @@ struct Reason {
   double ms = 0.0;
 };
 
-/// In the order of the first of each.
+/// Reasons in the order of their first occurrence.
 std::vector<Reason> reasonsOf(const Explanation& explanation);
 
 }  // namespace lumivox::command

@@ -13,7 +13,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kGap = 2;          // between columns
-constexpr std::size_t kLeastWords = 16;  // a column of words is not broken to less
+constexpr std::size_t kLeastWords = 16;  // least width to which a column of words is narrowed
 
 bool looksLikeNumber(const std::string& text) {
   if (text.empty()) return true;
@@ -22,13 +22,13 @@ bool looksLikeNumber(const std::string& text) {
 }
 
 struct Column {
-  std::size_t width = 0;  ///< as it is shown
-  std::size_t least = 0;  ///< that its longest word needs
+  std::size_t width = 0;  ///< as displayed
+  std::size_t least = 0;  ///< width of its longest word
   bool numbers = true;    ///< aligned to the right
   bool words = false;     ///< may be broken at spaces
 };
 
-/// The width that the longest word of a text needs: those behind the first may begin a line, which is
+/// The width that the longest word of a text needs. Each word but the first may begin a line, which is
 /// indented.
 std::size_t longestWord(const std::string& text) {
   std::size_t longest = 0;
@@ -72,7 +72,7 @@ std::size_t leastOf(const std::vector<Column>& columns, const std::vector<std::s
   return width;
 }
 
-/// Takes from the widest columns of words until these fit.
+/// Narrows the widest columns of words until the chosen columns fit into `room`.
 void narrow(std::vector<Column>& columns, const std::vector<std::size_t>& chosen, std::size_t room) {
   for (std::size_t over = widthOf(columns, chosen); over > room; over = widthOf(columns, chosen)) {
     Column* widest = nullptr;
@@ -94,7 +94,7 @@ std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
   for (std::size_t begin = 0; begin <= broken.size();) {
     const std::size_t end = std::min(broken.find('\n', begin), broken.size());
     std::string line = (begin == 0 ? "" : std::string(indent, ' ')) + broken.substr(begin, end - begin);
-    // A word that is wider than the column is cut, behind a slash where it has one.
+    // A word that is wider than the column is split, after a slash if it has one.
     for (; shownWidth(line) > width && line.size() > width; line.erase(0, lines.back().size())) {
       const std::size_t slash = line.rfind('/', width - 1);
       lines.push_back(line.substr(0, slash == std::string::npos || slash == 0 ? width : slash + 1));
@@ -151,7 +151,7 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows, std::si
     narrow(all, chosen, room);
     return block(rows, all, chosen);
   }
-  // Blocks. The keys leave at least half of the room to the others.
+  // Written in blocks. The key columns leave at least half of the room to the others.
   keys = std::min(keys, all.size());
   const std::vector<std::size_t> head(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(keys));
   narrow(all, head, std::max(room / 2, leastOf(all, head)));

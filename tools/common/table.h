@@ -1,4 +1,4 @@
-// Tables of texts that fit the terminal, and what they are made of.
+// Text tables that fit the terminal, and their parts.
 #pragma once
 
 #include <string>
@@ -9,25 +9,25 @@
 
 namespace lumivox::command {
 
-/// Columns of what standard output goes to.
+/// The width of standard output's terminal, in columns.
 int outputColumns();
-/// A text on standard output, coloured where that is a terminal that takes it.
+/// The text, coloured if standard output is a terminal that supports it.
 std::string painted(Paint paint, std::string_view text);
 
-/// Lays rows out in columns; the first row is the head, and columns of numbers align to the right. A table
-/// that is wider than `columns` (0: outputColumns()) breaks its columns of words at spaces, where that is
-/// enough; else it is written in blocks, one below the other: each has the first `keys` columns and as many
-/// of the others as fit.
+/// Lays rows out in columns. The first row is the head, and columns of numbers align to the right. In a table
+/// wider than `columns` (0: outputColumns()), columns of words wrap at spaces. If that is not enough, the
+/// table is written in blocks, one below the other, each with the first `keys` columns and as many of the
+/// others as fit.
 std::string textTable(const std::vector<std::vector<std::string>>& rows, std::size_t keys = 1,
                       int columns = 0);
 
-/// A table for each run of rows with the same first cell, which is its heading; `keys` of the columns after
-/// it.
+/// One table for each run of rows with the same first cell, which becomes its heading. `keys` counts the
+/// columns after it.
 std::string groupedTable(const std::vector<std::vector<std::string>>& rows, std::size_t keys = 1,
                          int columns = 0);
 
-/// Remarks below a table: broken at spaces to fit the terminal, further lines indented. Every line of `text`
-/// is one remark.
+/// Remarks below a table, one a line of `text`: wrapped at spaces to fit the terminal, with further lines
+/// indented.
 std::string remarks(const std::string& text);
 
 }  // namespace lumivox::command

@@ -1,4 +1,4 @@
-// cache: the references that are kept for later.
+// cache: the path-traced references that are stored for later runs.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 

@@ -32,7 +32,7 @@ TextKind kindOfText(const std::filesystem::path& file) {
   if (file.extension() == ".reproduction") return TextKind::reproduction;
   if (file.extension() == ".view") return TextKind::view;
   const dsl::Document document = dsl::parse(readFile(file), file);
-  // A pipeline may have sweeps before it.
+  // The order matters: a text of a pipeline may contain sweep blocks too.
   static const std::pair<const char*, TextKind> kBlocks[] = {{"scene", TextKind::scene},
                                                              {"pipeline", TextKind::pipeline},
                                                              {"sweep", TextKind::sweep},

@@ -8,7 +8,7 @@
 
 namespace lumivox::command {
 
-/// A subcommand's work, called after all options were read.
+/// A subcommand's work, called after all options were parsed.
 using Work = std::function<int()>;
 struct Commands {
   CLI::App& app;
@@ -16,7 +16,7 @@ struct Commands {
   /// Runs `work` when the subcommand was chosen.
   void onChosen(CLI::App* subcommand, Work work);
   Work chosen;
-  std::vector<std::string> words{};  ///< as given, without the program's name
+  std::vector<std::string> words{};  ///< the command line without the program's name
 };
 
 void addTextCommands(Commands& commands);      // check, fmt
@@ -43,10 +43,10 @@ void addViewCommand(Commands& commands);       // view
 void addHelpCommand(Commands& commands);  // help
 
 enum class TextKind { scene, pipeline, sweep, reproduction, view };
-/// By the extension, else by the blocks; Error when it is none of them.
+/// The kind by the file's extension, else by its blocks. Error if neither tells.
 TextKind kindOfText(const std::filesystem::path& file);
 
-/// "cornell" for scenes/cornell.scene: how tables name texts.
+/// "cornell" for scenes/cornell.scene: the name of a text in tables.
 std::string stem(const std::string& file);
 
 }  // namespace lumivox::command

@@ -1,4 +1,4 @@
-// compare: two EXR files.
+// compare: errors of an EXR file against a reference.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ struct CompareCommand {
 using LayerPair = std::pair<std::string, std::string>;
 
 constexpr double kLargestError = 1e37;
-constexpr const char* kMainLayer = "main";  // how the command line names the layer without a name
+constexpr const char* kMainLayer = "main";  // the command line's word for the layer without a name
 constexpr const char* kVariance = ".variance";
 
 std::string shown(const std::string& layer) {
@@ -78,7 +78,7 @@ std::vector<LayerPair> pairsOf(const CompareCommand& command, const LayeredImage
   return pairs;
 }
 
-/// Without its fourth channel, which is coverage and no radiance.
+/// The image without its fourth channel, which is coverage, not radiance.
 ImageBuffer withoutAlpha(const ImageBuffer& image) {
   if (image.channels() != 4) return image;
   ImageBuffer rgb(image.width(), image.height(), 3);
@@ -111,7 +111,7 @@ Json toJson(const LayerPair& pair, const ImageError& error) {
           {"non_finite_reference", error.nonFiniteReference}};
 }
 
-/// The exposure of all layers, and where it comes from: from the whole light where it is there.
+/// The exposure of all layers, and its source: that of the layer of all light, if the reference has it.
 FoundExposure exposureOf(const CompareCommand& command, const LayeredImage& reference,
                          const std::vector<LayerPair>& pairs) {
   if (const auto given = command.display.given()) return {*given, "--exposure"};
@@ -170,7 +170,7 @@ int compareFiles(const CompareCommand& command) {
           shown(pair.second), command.reference.string(), right.width(), right.height(), right.channels()));
     const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
     const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
-    // What is no radiance is shown as it is.
+    // Values that are not radiance are displayed without exposure.
     const bool asItIs = !(left.isRadiance() && right.isRadiance()) && !command.display.isGiven();
     asTheyAre = asTheyAre || asItIs;
     const Display layerDisplay = asItIs ? Display{} : Display{display.exposure, command.display.toneCurve()};

@@ -28,8 +28,8 @@ std::string timeText(const Measured& timeMs) {
   return formatMilliseconds(timeMs.value) + " ± " + formatMilliseconds(timeMs.uncertainty);
 }
 
-/// One line a point: its pipeline with the parameters that tell it from others; a point that beats it is
-/// named by its number.
+/// One line per point: its pipeline with the parameters that differ between points, and the number of a point
+/// that beats it.
 std::string shortFrontTable(const PipelineComparison& comparison) {
   std::vector<ReportPoint> records(comparison.points.size());
   std::vector<const ReportPoint*> points;
@@ -105,7 +105,7 @@ std::string equalText(const PipelineComparison& comparison, const std::vector<do
          "measured points, never beyond them\n";
 }
 
-/// The basis of the claims.
+/// The conditions of the comparison: when times count as different, and which points decide nothing.
 std::string basisText(const PipelineComparison& comparison) {
   std::string text =
       fmt::format("times count as different beyond {:.1f} %{}\n", 100.0 * comparison.timeShare,

@@ -1,4 +1,4 @@
-// Pipelines set against each other, as tables.
+// Comparisons of pipelines as tables.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace lumivox::command {
 
 enum class ComparisonTable { front, equalTime, equalError };
 
-/// The table that was asked for, with a line on what its numbers are.
+/// The chosen table, with a line that explains its numbers.
 std::string comparisonText(const PipelineComparison& comparison, ComparisonTable table);
 
 }  // namespace lumivox::command

@@ -1,4 +1,4 @@
-// describe: what a word of the texts means, and the whole reference.
+// describe: the meaning of a word of the texts, and the whole reference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string rangeText(const ParamBase& parameter) {
   if (parameter.type() == ParamBase::Type::flag) return "on or off";
   if (parameter.type() == ParamBase::Type::integer)
     return fmt::format("an integer in {}..{}", parameter.low(), parameter.high());
-  // As floats, which is how they were given: 0.05 and not 0.05000000074505806.
+  // Printed as the floats that they were declared as: 0.05 and not 0.05000000074505806.
   const auto given = [](double end) { return std::stod(fmt::format("{}", static_cast<float>(end))); };
   return fmt::format("a number in {}..{}{}", given(parameter.low()), given(parameter.high()),
                      parameter.unit().empty() ? "" : " " + parameter.unit());
@@ -85,13 +85,13 @@ std::string passText(const std::string& technique, const PassEntry& entry) {
   return text;
 }
 
-/// "readers", "readers of coarser levels": whom a condition concerns.
+/// The readers that a condition concerns: "readers", "readers of coarser levels".
 std::string readersText(const PortCondition& condition) {
   return condition.readers.empty() ? "readers" : "readers " + condition.readers;
 }
 
-/// "rgb radiance, W/(sr m^2)", with what readers must heed, and what the health scan and the exporter make of
-/// it.
+/// A port kind with its meaning, its resources (and which may be negative), the conditions for readers, the
+/// fields that are exported and what counts as occupied.
 std::string kindText(const PortKind& kind) {
   std::string text = fmt::format("port kind {}\n  {}\n", kind.name, kind.meaning);
   for (const PortResource& one : kind.resources)
@@ -106,7 +106,7 @@ std::string kindText(const PortKind& kind) {
   return text;
 }
 
-/// Inputs, outputs or parameters of this name in more passes than this are listed by their passes alone.
+/// If a name belongs to inputs, outputs or parameters of more passes than this, only the passes are listed.
 constexpr std::size_t kMostInFull = 3;
 
 /// An input, output or parameter of the described name.
@@ -114,7 +114,7 @@ struct Member {
   std::string pass, text;
 };
 
-/// Each in full, or, where there are many: "input light of 7 passes: a.b, a.c, ...".
+/// The members in full, or more than kMostInFull of them as "input light of 7 passes: a.b, a.c, ...".
 std::string membersText(const std::string& what, const std::string& word,
                         const std::vector<Member>& members) {
   std::string text;
@@ -129,7 +129,7 @@ std::string membersText(const std::string& what, const std::string& word,
                      members.size(), fmt::join(passes, ", "), passes.front());
 }
 
-/// Everything among the techniques that has this name; adds all names to `known`.
+/// Describes everything in the techniques that has this name; adds all names to `known`.
 std::string describeInTechniques(TechniqueSet& techniques, const std::string& word,
                                  std::vector<std::string>& known) {
   std::string text;
@@ -167,15 +167,15 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
          membersText("parameter", word, parameters);
 }
 
-/// The known word that is this one with an "s" more or less: "cones" for "cone"; empty where there is none.
+/// The known word that differs from this one by a final "s": "cones" for "cone". Empty if there is none.
 std::string otherNumberOf(const std::string& word, const std::vector<std::string>& known) {
   for (const std::string& one : known)
     if (one == word + "s" || word == one + "s") return one;
   return {};
 }
 
-/// The lines as wide as the terminal. What does not fit goes on below the line's second column ("  fov  full
-/// angle"), or, in a line without columns, two further in than the line.
+/// Wraps lines to the width of the terminal. A line with columns ("  fov  full angle") continues below its
+/// second column, and a line without columns two spaces further in.
 std::string fittedToTerminal(const std::string& text) {
   const auto columns = static_cast<std::size_t>(outputColumns());
   std::string result;
@@ -268,8 +268,7 @@ std::string kindsAsMarkdown(TechniqueSet& techniques) {
   return text;
 }
 
-/// The numbers of bindings that the shaders of several techniques agree on: those of shaders/common and
-/// shaders/toolkit.
+/// The binding numbers that techniques share: those of shaders/common and shaders/toolkit.
 std::string bindingsAsMarkdown(TechniqueSet& techniques) {
   using Key = std::pair<shader::BindingKind, std::string>;
   struct Use {

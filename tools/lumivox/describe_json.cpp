@@ -14,7 +14,7 @@
 namespace lumivox::command {
 namespace {
 
-/// As dsl::PropertyType counts.
+/// In the order of dsl::PropertyType.
 constexpr std::array kPropertyTypes = {
     "number",     "integer", "vector2", "vector3", "one_or_three", "axis_and_number",
     "resolution", "word",    "text",    "name",    "list",         "range",
@@ -27,13 +27,13 @@ std::string baseUnit(const dsl::Dimension& dimension) {
   return {};
 }
 
-/// 0.05 and not 0.05000000074505806 of an end that was given as a float.
+/// A range's end that was declared as a float: 0.05 and not 0.05000000074505806.
 double given(double number) {
   return std::isfinite(number) ? std::stod(fmt::format("{:.7g}", number)) : number;
 }
 
-/// "40 deg" is 0.698..., "0 1 0" three numbers, "on" true, and other words themselves. A unit holds for the
-/// numbers before it.
+/// "40 deg" becomes 0.698..., "0 1 0" three numbers, "on" true; any other word stays a string. A unit applies
+/// to the numbers before it.
 Json valueOf(const std::string& text) {
   if (text == "on" || text == "off") return text == "on";
   std::istringstream words(text);
@@ -55,7 +55,7 @@ Json valueOf(const std::string& text) {
   return numbers.size() == 1 ? Json(numbers.front()) : Json(numbers);
 }
 
-/// Of numbers alone; an end that is nowhere is left out.
+/// Adds the range of a number. An infinite end is left out.
 void addRange(Json& json, double low, double high, const std::string& unit) {
   if (std::isfinite(low)) json["low"] = low;
   if (std::isfinite(high)) json["high"] = high;
@@ -99,7 +99,7 @@ Json headed(const char* what, Json json) {
   return json;
 }
 
-/// Blocks and properties of this word; `path` are the blocks around them.
+/// Finds the blocks and properties of this word. `path`: the blocks around them.
 void findInTexts(const std::vector<dsl::BlockSpecification>& blocks, const std::string& word,
                  std::vector<std::string>& path, Json& found) {
   const auto add = [&](const char* what, Json json) {

@@ -1,4 +1,4 @@
-// `lumivox describe WORD --json`: what the tables know of a word, with numbers as numbers.
+// `lumivox describe WORD --json`: the meanings of a word as JSON.
 #pragma once
 
 #include <memory>
@@ -20,11 +20,11 @@ void forEachPass(TechniqueSet& techniques, const Visit& visit) {
       for (const PassEntry& entry : technique->passes) visit(*technique, entry);
 }
 
-/// The framework's kinds of port, and those that techniques brought, which the passes keep alive.
+/// The port kinds of the framework and of the techniques. `passes` keeps the latter alive.
 std::vector<const PortKind*> portKinds(TechniqueSet& techniques, std::vector<std::unique_ptr<Pass>>& passes);
 
-/// Every place of the word: `what` (block, property, port kind, technique, pass, input, output or parameter),
-/// its meaning, and what values it takes. Numbers are in base units, which `unit` names (m, s, rad, /m, ...).
+/// Every use of the word: `what` it is (block, property, port kind, technique, pass, input, output or
+/// parameter), its meaning and its values. Numbers are in base units, named by `unit` (m, s, rad, /m, ...).
 Json describedAsJson(TechniqueSet& techniques, const std::string& word);
 
 }  // namespace lumivox::command

@@ -1,4 +1,4 @@
-// device: what this device is and what it can do at most.
+// device: describes the device and measures its peak rates.
 #include <fmt/format.h>
 
 #include "command.h"
@@ -26,7 +26,7 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
     progress.show(done, total, std::numeric_limits<double>::quiet_NaN(), name);
   };
   const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
-  ResultsStore store(file);  // a store that cannot be written is refused before the work
+  ResultsStore store(file);  // throws for a store that cannot be written, before the work
   const auto device = global.openDevice();
   const std::vector<PeakRate> peakRates = measurePeakRates(*device, options);
   store.add(peakRates);

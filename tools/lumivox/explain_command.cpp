@@ -1,5 +1,5 @@
-// explain: what a run leaves out, why, and what that saves; over many scenes and pipelines as a matrix, one
-// block a scene.
+// explain: the passes and outputs that a run leaves out, with reasons and savings. For many scenes and
+// pipelines: a matrix with a block for each scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace lumivox::command {
 namespace {
 
 struct ExplainCommand {
-  std::vector<std::filesystem::path> texts;      ///< scenes and pipelines, as they come
+  std::vector<std::filesystem::path> texts;      ///< scenes and pipelines, in any order
   std::vector<std::filesystem::path> pipelines;  ///< of --pipeline
   std::filesystem::path graph;                   ///< empty: none
   RunOptions run;
@@ -54,7 +54,7 @@ std::string passText(const PruningRecord& record) {
   return textTable(passes);
 }
 
-/// The summary, then what is left out by its reasons, then the passes.
+/// The summary, then the work left out by reason, then the passes.
 std::string asText(const PruningRecord& record) {
   const Explanation& explanation = record.explanation;
   const bool timed = record.prunedMs.repeats > 0;
@@ -89,8 +89,8 @@ std::string bytesText(std::uint64_t first, std::uint64_t second) {
   return a + "/" + b;
 }
 
-/// Name, passes kept of all, variants needed, compiled and possible, memory as it runs and with everything
-/// kept, and with times those of a first frame and of a later one.
+/// Name; passes kept of all; variants needed, compiled and possible; memory with pruning and without. If
+/// times were measured, also those of a first and of a later frame.
 std::vector<std::string> cellRow(const NeededCell& cell) {
   const std::string name = "  " + stem(cell.pipeline);
   if (!cell.record) return {name, cell.failed ? "failed" : "absent"};
@@ -111,7 +111,7 @@ std::vector<std::string> cellRow(const NeededCell& cell) {
   return row;
 }
 
-/// Remarks below the tables: why a cell is empty, and which pipelines do not suit.
+/// A remark below the tables: why a cell is empty, or why the pipeline does not suit the scene.
 std::string remark(const NeededCell& cell, bool wholeScene) {
   if (!cell.absent.empty())
     return remarks(fmt::format("{}: {}{}: {}", cell.failed ? "failed" : "absent", stem(cell.scene),
@@ -121,7 +121,7 @@ std::string remark(const NeededCell& cell, bool wholeScene) {
                              stem(cell.scene), cell.unsuited));
 }
 
-/// One block for each scene, with a line for each pipeline.
+/// A block for each scene, with a line for each pipeline.
 std::string matrixText(const std::vector<NeededCell>& cells) {
   const bool timed = std::any_of(cells.begin(), cells.end(), [](const NeededCell& cell) {
     return cell.record && cell.record->prunedMs.repeats > 0;
@@ -150,7 +150,7 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
       below += remark(*first, false);
     }
   }
-  // Long names give way to the numbers.
+  // Long names are shortened so that all numbers fit.
   std::vector<std::size_t> widths;
   for (const std::vector<std::string>& row : rows)
     for (std::size_t c = 1; c < row.size(); ++c) {
@@ -183,7 +183,7 @@ Json matrixJson(const std::vector<NeededCell>& cells) {
   return {{"cells", list}};
 }
 
-/// Every committed scene, those of the stress battery last.
+/// All committed scenes, those of the stress battery last.
 std::vector<std::filesystem::path> allScenes() {
   const auto folder = committedScenes();
   if (!folder)
@@ -202,7 +202,7 @@ std::vector<std::filesystem::path> allScenes() {
   return files;
 }
 
-/// The file of --graph, checked; everything that it needs is there.
+/// The file of --graph, checked. Error if `dot`, which draws an .svg, is absent.
 Outputs graphOutput(const ExplainCommand& command, const ReportOptions& options, bool one) {
   Outputs outputs;
   outputs.add("--graph", command.graph, {".svg", ".dot", ".gv"});

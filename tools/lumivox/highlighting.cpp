@@ -38,7 +38,8 @@ void add(HighlightedWords& words, const std::vector<dsl::BlockSpecification>& bl
   }
 }
 
-/// The words between bars, as both regular expressions take them; longer ones first, or "m" would hide "m/s".
+/// The words as alternatives of a regular expression. Longer words come first, or "m" would match the
+/// beginning of "m/s".
 std::string alternatives(std::vector<std::string> words) {
   std::stable_sort(words.begin(), words.end(),
                    [](const std::string& a, const std::string& b) { return a.size() > b.size(); });
@@ -66,7 +67,7 @@ std::string textMateGrammar(const HighlightedWords& words) {
   const auto rule = [](const std::string& name, const std::string& match) {
     return Grammar{{"name", name + ".lumivox"}, {"match", match}};
   };
-  // Words are whole ones, of letters, digits and underscores.
+  // Matches whole words of letters, digits and underscores only.
   const auto whole = [](const std::vector<std::string>& some) {
     return fmt::format(R"((?<![\w./$])(?:{})(?![\w./]))", alternatives(some));
   };
@@ -97,8 +98,7 @@ std::string textMateGrammar(const HighlightedWords& words) {
 }
 
 std::string vimSyntax(const HighlightedWords& words) {
-  // Vim takes keywords of word characters only; a word that is several things has the meaning that comes
-  // last.
+  // Vim's keywords consist of word characters only. Of several groups with the same word, the last one wins.
   const auto keywords = [](const char* group, const std::vector<std::string>& some) {
     std::string text;
     for (const std::string& word : some) text += fmt::format("syntax keyword {} {}\n", group, word);

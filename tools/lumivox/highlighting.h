@@ -1,4 +1,4 @@
-// Grammars by which editors colour the texts, made from the tables that the parser uses.
+// Grammars for the highlighting of texts in editors, generated from the tables of the parser.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace lumivox::command {
 
-/// Every word of the scene, pipeline, sweep and reproduction texts by what it is; sorted, each once.
+/// The words of scene, pipeline, sweep and reproduction texts by kind, sorted and without duplicates.
 struct HighlightedWords {
   std::vector<std::string> blocks, kinds, properties, choices, units;
 };

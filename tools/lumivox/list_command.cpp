@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The string in the first block of a text: its title.
+/// The title of a text: the string in the header of its first block.
 std::string titleOf(const fs::path& file) {
   const dsl::Document document = dsl::parse(readFile(file), file);
   for (const dsl::Item& item : document.items)
@@ -23,7 +23,7 @@ std::string titleOf(const fs::path& file) {
   return {};
 }
 
-/// Those of the project here, and those that come with the program.
+/// The texts of the project around the working folder and those installed with the program.
 Json texts(NamedText kind) {
   std::error_code failure;
   Json list = Json::array();
@@ -69,7 +69,7 @@ Json passesList(TechniqueSet& techniques) {
   return list;
 }
 
-/// Columns for the terminal; the JSON has more.
+/// A table for the terminal, with some of the members that the JSON has.
 std::string asTable(const Json& list, const std::vector<std::string>& columns) {
   std::vector<std::vector<std::string>> rows{columns};
   for (const Json& entry : list) {

@@ -8,7 +8,7 @@ namespace {
 using namespace lumivox;
 using namespace lumivox::command;
 
-/// For whoever types the program's name alone.
+/// Printed when the program is started without a command.
 constexpr const char* kFirstSteps =
     "lumivox: expected a command. To begin with:\n"
     "  lumivox list scenes\n"

@@ -147,7 +147,8 @@ std::string parametersText(const std::map<std::string, std::string>& parameters)
 std::vector<std::string> lineNames(const std::vector<const ReportPoint*>& points) {
   struct Group {
     std::size_t points = 0;
-    std::map<std::string, std::map<std::string, std::size_t>> values;  ///< of each parameter, and how often
+    std::map<std::string, std::map<std::string, std::size_t>>
+        values;  ///< of each parameter, with their counts
   };
   std::map<std::pair<std::string, std::string>, Group> groups;
   for (const ReportPoint* point : points) {

@@ -1,4 +1,4 @@
-// new technique: a working technique to start from, inside the tree or outside of it.
+// new technique: writes a working technique to start from, inside this tree or in a project of its own.
 #include <fmt/format.h>
 
 #include "command.h"
@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The project that holds the working folder; without one a new folder of the technique's name.
+/// The project around the working folder; without one, a new folder with the technique's name.
 fs::path projectHere(const std::string& name) {
   std::error_code ignored;
   const fs::path here = fs::current_path(ignored);
@@ -20,8 +20,8 @@ fs::path projectHere(const std::string& name) {
   return here / name;
 }
 
-/// The folder that this program was built in; none where it is installed. find_package finds no Lumivox
-/// there.
+/// The folder that this program was built in, in which find_package finds no Lumivox; nothing if the program
+/// is installed.
 std::optional<fs::path> buildFolder() {
   const auto program = programFile();
   if (!program) return std::nullopt;
@@ -31,7 +31,7 @@ std::optional<fs::path> buildFolder() {
   return folder;
 }
 
-/// A Lumivox that is installed where neither the shell nor find_package looks: its prefix.
+/// The prefix of this installation if neither the shell nor find_package searches it.
 std::optional<fs::path> unusualPrefix() {
   const auto program = programFile();
   if (!program || !programData("cmake")) return std::nullopt;

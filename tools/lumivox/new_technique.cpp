@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 64;
 
-/// Words that C++ keeps for itself, and namespaces of the framework and folders of shaders that a technique
-/// of this name would hide.
+/// Keywords of C++, and names of the framework's namespaces and shader folders, which a technique of that
+/// name would hide.
 const std::set<std::string>& reservedWords() {
   static const std::set<std::string> words = {
       // clang-format off
@@ -45,8 +45,8 @@ std::string withName(std::string text, const std::string& name) {
   return text;
 }
 
-/// Adds the files of a folder of templates, by the path that they get, with the name put in; images as they
-/// are.
+/// Adds the files of a template folder by their new paths. The technique's name replaces kNameInTemplates in
+/// paths and texts; images are copied.
 void addTemplates(std::map<fs::path, std::string>& files, const fs::path& folder, const std::string& name) {
   if (!fs::is_directory(folder))
     throw Error(

@@ -1,4 +1,4 @@
-// Writing a technique from the templates that come with the program.
+// Writes a technique from the templates that are installed with the program.
 #pragma once
 
 #include <filesystem>
@@ -7,19 +7,19 @@
 
 namespace lumivox::command {
 
-/// The word that stands for the technique's name in the templates' texts and file names.
+/// The placeholder for the technique's name in the texts and file names of templates.
 inline constexpr const char* kNameInTemplates = "technique_name";
 
-/// Why this is not a name for a technique, in words ("..., expected ..."); empty when it is one. The name
-/// becomes a folder, a C++ namespace, a library and a word of pipeline texts.
+/// Why a technique cannot have this name, in words ("..., expected ..."); empty if it can. The name becomes a
+/// folder, a C++ namespace, a library and a word of pipeline texts.
 std::string nameDefect(const std::string& name);
 
-/// A project with techniques: this tree, or a folder that newTechnique has made.
+/// Whether the folder is a project with techniques: this tree, or a folder from newTechnique().
 bool isTechniqueProject(const std::filesystem::path& folder);
 
-/// Writes the technique `name` of templates/technique into `project`, and templates/project around it when
-/// that is no project yet. Returns the files, relative to the project. Error, and nothing written, when one
-/// of them is there already, or the project's folder holds something else.
+/// Writes templates/technique as technique `name` into `project`, which gets templates/project first if it is
+/// not yet a project. Returns the files, relative to the project. Error, with nothing written, if one of them
+/// exists already, or if the folder is neither a project nor empty.
 std::vector<std::filesystem::path> newTechnique(const std::filesystem::path& templates,
                                                 const std::string& name,
                                                 const std::filesystem::path& project);

@@ -48,10 +48,11 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
     writePng(command.output, full, {exposure, command.display.toneCurve()},
              {{kExposureAttribute, exposureNumber(exposure)}});
   } else {
-    reference.layers[""] = full;  // what a viewer of images shows first
+    reference.layers[""] = full;  // the layer that image viewers show first
     reference.attributes["lumivox.command"] = global.commandLine;
     reference.attributes["lumivox.version"] = LUMIVOX_VERSION;
-    // For whoever has the image without its scene, and cannot tell what emits.
+    // Without the scene, a reader of the image cannot tell which surfaces emit, and so cannot compute the
+    // exposure.
     reference.attributes[kExposureAttribute] = exposureNumber(exposure);
     writeExr(command.output, reference);
   }

@@ -31,23 +31,23 @@ namespace fs = std::filesystem;
 struct RenderCommand {
   fs::path scene, pipeline, output, sheet, video;
   RunOptions run;
-  std::vector<double> eye, target;  ///< in place of the camera's; empty: the camera's
+  std::vector<double> eye, target;  ///< replace the camera's; empty: the camera's
   double fov = 0.0;                 ///< rad; 0: the camera's
   DisplayOptions display;
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
-  int accumulate = 0;  ///< frames an image; 0: each is made alone
-  int subpixels = 0;   ///< positions in the pixel; 0: as positions() chooses
+  int accumulate = 0;  ///< frames per image; 0: no accumulation
+  int subpixels = 0;   ///< sample positions per pixel; 0: positions() chooses
   bool keepEverything = false, health = false, checkReads = false, json = false;
 
   bool isAnimation() const { return !frames.empty(); }
   double timeOf(int frame) const { return run.time + (isAnimation() ? frame / framesPerSecond : 0.0); }
   fs::path fileOf(int frame) const { return isAnimation() ? numberedName(output, frame) : output; }
   bool movesCamera() const { return !eye.empty() || !target.empty() || fov > 0.0; }
-  /// Whether anything is made that somebody looks at.
+  /// Whether the command writes an image for display.
   bool displays() const { return output.extension() == ".png" || !sheet.empty() || !video.empty(); }
-  /// Positions in the pixel that an image is the mean of. Numbers are kept as one frame makes them, unless
-  /// somebody asks; a frame that follows others has its camera where they had theirs.
+  /// Sample positions per pixel that an image averages. An EXR file holds the values of one frame unless
+  /// --subpixels says otherwise, and accumulated frames must share one camera position.
   int positions() const {
     constexpr int kSmooth = 4;
     if (subpixels > 0) return subpixels;
@@ -55,8 +55,7 @@ struct RenderCommand {
   }
 };
 
-/// The frame that is shown at one time, after the frames that it accumulates. Findings are those of all of
-/// them.
+/// The frame that is shown at one time, after the frames that it accumulates, with the findings of them all.
 FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor, const Scene& scene,
                         int frame, Progress& progress) {
   const double time = command.timeOf(frame);
@@ -99,7 +98,7 @@ ImageBuffer requireImage(const RenderCommand& command, const FrameResult& frame)
   return main;
 }
 
-/// Some of the frames, spread over the sequence, both ends among them.
+/// At most `most` frames, spread evenly over the sequence, including both ends.
 std::set<int> spread(int first, int last, int most) {
   std::set<int> frames;
   for (int i = 0; i < most; ++i)
@@ -107,7 +106,7 @@ std::set<int> spread(int first, int last, int most) {
   return frames;
 }
 
-/// The camera that is looked through: one of the scene, or what the options make of it.
+/// The camera of the scene that the options name, with their changes.
 Camera cameraOf(const RenderCommand& command, const Scene& scene) {
   Camera camera = scene.camera(command.run.camera);
   const auto place = [](const std::vector<double>& n) { return glm::dvec3(n[0], n[1], n[2]); };
@@ -118,7 +117,8 @@ Camera cameraOf(const RenderCommand& command, const Scene& scene) {
   return camera;
 }
 
-/// Every image of the run is shown at this EV: that of the view, of an animation at some of its frames.
+/// The exposure, in EV, of all images of the run: that of the view, for an animation metered at some of its
+/// frames.
 double exposureOf(const RenderCommand& command, Scene& scene, int first, int last) {
   ReferenceOptions view;
   view.camera = command.run.camera;
@@ -127,7 +127,8 @@ double exposureOf(const RenderCommand& command, Scene& scene, int first, int las
   std::vector<double> times;
   for (const int frame : first == last ? std::set{first} : spread(first, last, kMeteredFrames))
     times.push_back(command.timeOf(frame));
-  // The hash of the text does not know of a camera that was moved; without it the contents tell.
+  // The text's hash does not cover a camera that the options moved. Without it the scene's contents identify
+  // the view.
   const ContentHash text = scene.hash;
   if (command.movesCamera()) scene.hash = {};
   const double exposure = viewExposure(scene, view, times);
@@ -172,7 +173,7 @@ class Files {
   }
 
  private:
-  /// Occlusion and the like, fractions, are shown as they are, unless somebody says how.
+  /// Fractions, such as occlusion, are displayed without exposure unless the options give one.
   Display displayOf(const ImageBuffer& image) const {
     return command_.display.isGiven() ? display_ : lumivox::displayOf(image, display_);
   }
@@ -226,7 +227,8 @@ class Files {
   std::optional<VideoWriter> video_;
 };
 
-/// What an interruption would say when the frame is written. The exposure that was found goes with the rest.
+/// The message of an interruption after this frame was written: how to render the remaining frames at the
+/// same exposure.
 std::string keptText(const RenderCommand& command, int frame, int last, const Display& display,
                      const GlobalOptions& global) {
   if (command.output.empty())
@@ -239,7 +241,7 @@ std::string keptText(const RenderCommand& command, int frame, int last, const Di
                      global.commandLine);
 }
 
-/// What can be wrong in the options, before any work. The files that are written.
+/// The files that the command writes. Error for wrong options, before any work.
 Outputs checkFiles(const RenderCommand& command, int first, int last) {
   if (command.output.empty() && command.sheet.empty() && command.video.empty())
     throw Error("nothing to write; expected --out, --sheet or --video");
@@ -275,7 +277,7 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   options.keepEverything = command.keepEverything;
   options.health = command.health;
   options.accumulate = command.accumulate > 0;
-  // What the camera does not change is made once for all positions.
+  // The sample positions share everything that does not depend on the camera.
   options.interactive = command.positions() > 1;
   if (command.subpixels > 1 && command.accumulate > 0)
     throw Error(

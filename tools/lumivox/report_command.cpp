@@ -1,4 +1,4 @@
-// report: the main job.
+// report: measures pipelines on scenes and writes the page that compares them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct ReportCommand {
   bool json = false, csv = false, brief = false;
 };
 
-/// "12.5 % (1.0 of 8.0 ms)", or empty where leaving out does not make a frame shorter.
+/// "12.5 % (1.0 of 8.0 ms)"; empty if pruning does not make a frame shorter.
 std::string savingText(double share, const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   if (!decidable(medianOf(unpruned), medianOf(pruned)) ||
       !differ(medianOf(unpruned), medianOf(pruned), kSignificantTimeShare) || !(share > 0.0))
@@ -36,7 +36,7 @@ std::string savingText(double share, const TimingStatistics& pruned, const Timin
                      formatMilliseconds(unpruned.median));
 }
 
-/// What the pipelines of a scene left out, in a sentence.
+/// A sentence on what pruning left out and saved in the pipelines of a scene.
 std::string neededText(const std::vector<const PruningRecord*>& prunings) {
   if (prunings.empty()) return "what it needs was not measured";
   std::size_t kept = 0, all = 0;
@@ -65,7 +65,8 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
   if (first != nullptr)
     time =
         saved(*first, savingText(first->savedShare(), first->prunedMs, first->unprunedMs), "a first frame");
-  // What is left out within passes, such as outputs and variants of shaders, may save time and memory, too.
+  // Even if all passes are kept, pruning within them, of outputs and shader variants, may save time and
+  // memory.
   std::string text = isWhole ? fmt::format("all {} passes of {} are needed", all, those)
                              : fmt::format("{} of {} passes of {} are needed", kept, all, those);
   const bool savesNothing = isWhole && bytes == 0 && time.empty() && changed.empty();
@@ -81,7 +82,7 @@ std::string neededText(const std::vector<const PruningRecord*>& prunings) {
   return text + (still.empty() ? "" : "; what stands still while the camera moves saves" + still.substr(1));
 }
 
-/// Of a scene: the least error, the fastest, and which no other beats.
+/// The points of a scene with the least error, the shortest frame, and the ones that no other beats.
 std::string verdict(const std::vector<const ReportPoint*>& points, const std::vector<std::string>& names) {
   const PipelineComparison comparison = comparePipelines(points, "final", false, kDefaultMetric, {});
   if (comparison.points.empty()) return "no pipeline was judged\n";

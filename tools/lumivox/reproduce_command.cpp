@@ -1,4 +1,4 @@
-// reproduce: tables and figures of papers, measured here and compared; results that are kept, and the cards
+// reproduce: measures tables and figures of papers and compares them; keeps the results, and writes the cards
 // that quote them.
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ std::vector<PublishedResult> committedTables() {
   return tables;
 }
 
-/// The results of these names, or of these files; all committed ones without a name.
+/// The published results of these names or files; all committed ones if there are none.
 std::vector<PublishedResult> chosenTables(const std::vector<std::string>& names) {
   if (names.empty()) return committedTables();
   std::vector<PublishedResult> chosen;
@@ -91,7 +91,7 @@ int list(const ReproduceCommand& command) {
                     {"curves", result.curves.size()},
                     {"panels", result.panels.size()},
                     {"measured", measured}});
-    // Counts are told where something cannot be measured; all of them are in the JSON.
+    // The table shows counts only where something cannot be measured; the JSON always has them.
     const bool isWhole = static_cast<std::size_t>(measured) == setUps.size();
     rows.push_back({citedName(result),
                     isWhole ? result.title
@@ -128,7 +128,7 @@ std::string resultText(const ReproducedResult& result, const std::vector<fs::pat
   return verdict.empty() ? text : text + verdict + "\n";
 }
 
-/// The sheet and the curves of a figure; nothing for a table.
+/// Writes the sheet and the curves of a figure; nothing for a table.
 std::vector<fs::path> writeFigures(const fs::path& folder, const ReproducedResult& result) {
   std::vector<fs::path> files;
   const auto add = [&](const char* extension, const std::string& content) {
@@ -145,7 +145,7 @@ std::vector<fs::path> writeFigures(const fs::path& folder, const ReproducedResul
 
 // ---- what is kept, and who quotes it
 
-/// The project's folder: that of the committed scenes.
+/// The project's folder, which contains the committed scenes.
 fs::path projectFolder() {
   const auto scenes = committedScenes();
   if (!scenes)
@@ -154,7 +154,7 @@ fs::path projectFolder() {
   return scenes->parent_path();
 }
 
-/// Those that were measured take the place of what the file has of them; the rest of it stays.
+/// Replaces the measured results in the file, and keeps all others.
 void record(const fs::path& file, const std::vector<ReproducedResult>& measured) {
   std::vector<ReproducedResult> kept;
   if (fs::exists(file)) kept = judged(readReproductions(file));
@@ -173,13 +173,13 @@ void record(const fs::path& file, const std::vector<ReproducedResult>& measured)
   writeFileAtomically(file, reproductionsAsJson(kept));
 }
 
-/// The first line in which two texts differ.
+/// The number of the first line in which two texts differ.
 std::size_t firstDifference(const std::string& one, const std::string& other) {
   const auto place = std::mismatch(one.begin(), one.end(), other.begin(), other.end()).first;
   return 1 + static_cast<std::size_t>(std::count(one.begin(), place, '\n'));
 }
 
-/// Of all techniques that are found.
+/// The published values of the parameters of all available techniques.
 std::vector<PublishedParameter> publishedParameters(const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   std::vector<PublishedParameter> all;
@@ -192,8 +192,8 @@ std::vector<PublishedParameter> publishedParameters(const GlobalOptions& global)
   return all;
 }
 
-/// Writes the page of kept results and every generated passage of the cards and guides, or, only checking,
-/// tells where one differs.
+/// Writes the page of kept results and every generated passage of the cards and guides. With --check, only
+/// reports where one differs.
 int writeCards(const ReproduceCommand& command, const GlobalOptions& global) {
   const fs::path project = projectFolder(), page = project / "docs/benchmarks/reproductions.md";
   const std::vector<ReproducedResult> results = judged(readReproductions(
@@ -242,7 +242,7 @@ void write(const fs::path& output, const std::vector<ReproducedResult>& results)
       output, output.extension() == ".md" ? reproductionsAsMarkdown(results) : reproductionsAsHtml(results));
 }
 
-/// What an interruption would say after so many of the chosen results.
+/// The message of an interruption after this many of the chosen results.
 std::string keptText(const ReproduceCommand& command, const std::vector<PublishedResult>& chosen,
                      std::size_t done, const GlobalOptions& global) {
   std::vector<std::string> rest;
@@ -264,7 +264,7 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
       .add("--record", command.record, {".json"}, Outputs::Endings::otherKindsRefused)
       .check(inputs);
   if (!command.record.empty()) {
-    if (fs::exists(command.record)) readReproductions(command.record);  // before the work, not after it
+    if (fs::exists(command.record)) readReproductions(command.record);  // a damaged file throws here
   }
   const std::vector<PublishedResult> chosen = chosenTables(command.names);
   const bool traces = std::any_of(chosen.begin(), chosen.end(), [](const PublishedResult& result) {
@@ -300,7 +300,7 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
         store ? &*store : nullptr));
     failed = failed || results.back().failed();
     const std::vector<fs::path> files = writeFigures(command.figures, results.back());
-    // Kept one by one: what was measured stays when the next one is interrupted.
+    // Recorded one by one, so that an interruption loses only the current one.
     if (!command.record.empty()) record(command.record, {results.back()});
     options.progress = {};
     if (!command.json) print(resultText(results.back(), files) + "\n");
@@ -313,7 +313,7 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
 int reproduce(const ReproduceCommand& command, const GlobalOptions& global) {
   if (command.list) return list(command);
   int code = kGood;
-  // Cards alone are written, and checked, without measuring anything.
+  // --check, and --cards without names or --record, measure nothing.
   const bool onlyCards = command.check || (command.cards && command.record.empty() && command.names.empty());
   if (!onlyCards) code = measure(command, global);
   return command.cards ? std::max(code, writeCards(command, global)) : code;

@@ -1,5 +1,5 @@
-// results: lists, exports, merges, imports and removes what a results store holds, and sets its pipelines
-// against each other. compare-runs: what changed.
+// results: lists, exports, merges, imports and removes the contents of a results store, and compares its
+// pipelines. compare-runs: compares runs of the same points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct ResultsCommand {
   std::string format = "csv";
   std::vector<std::filesystem::path> others;
   bool all = false, dryRun = false, json = false;
-  std::string component, metric = kDefaultMetric, against;  ///< empty: what is shown first
+  std::string component, metric = kDefaultMetric, against;  ///< empty: the default
   std::vector<std::string> frameTimes, errors;
 
   std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
@@ -41,7 +41,7 @@ struct ResultsCommand {
     if (failed || good) result.failed = failed;
     return result;
   }
-  /// The choice of cells; pipeline, device, day and number are those that runs are chosen by.
+  /// The filter of cells, by the same options for pipeline, device, day and number as that of runs.
   CellFilter askedCells() const {
     CellFilter result = cells;
     result.pipeline = filter.pipeline;
@@ -97,7 +97,7 @@ std::string cellsList(const std::vector<StressCell>& cells) {
   return cells.empty() ? std::string() : textTable(rows);
 }
 
-/// How many were chosen; when none was, what there is to choose from.
+/// The number of chosen runs; if there is none, the scenes and pipelines in the store.
 std::string countText(const std::vector<StoredRun>& chosen, const ResultsStore& store) {
   std::string text = fmt::format("{} runs; {}\n", chosen.size(), store.file().string());
   if (!chosen.empty()) return text;
@@ -129,7 +129,7 @@ int listResults(const ResultsCommand& command) {
   return kGood;
 }
 
-/// The component that a comparison is asked for.
+/// The component of --component. Error, with the nearest, for an unknown one.
 std::string componentNamed(const std::string& asked) {
   if (asked == kWholeImage) return name(Contributes::final);
   std::vector<std::string> known = comparableComponents();
@@ -140,7 +140,8 @@ std::string componentNamed(const std::string& asked) {
                           nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
-/// What was asked for; else what a reader is shown first, and after it the whole image.
+/// The comparison of --component. Without the option, the one that a report shows first, then that of the
+/// whole image.
 std::vector<PipelineComparison> askedComparisons(const ResultsCommand& command,
                                                  const std::vector<const ReportPoint*>& points,
                                                  const ComparisonLimits& limits) {
@@ -227,7 +228,7 @@ std::string countText(const MergeCount& count, const std::filesystem::path& file
 }
 
 int mergeResults(const ResultsCommand& command) {
-  // All are opened before the first is taken over.
+  // All are opened before the first is merged, so that one that cannot be read leaves the store unchanged.
   std::vector<ResultsStore> others;
   for (const std::filesystem::path& file : command.others)
     others.emplace_back(file, ResultsStore::Mode::read);
@@ -275,7 +276,7 @@ int removeResults(const ResultsCommand& command) {
   return kGood;
 }
 
-/// Whether A or B of compare-runs is a store; else it is the number of a run in --store.
+/// Whether A or B of compare-runs is a store; if not, it is the number of a run in --store.
 bool isStore(const std::string& text) {
   return text.find_first_not_of("0123456789") != std::string::npos;
 }
@@ -284,7 +285,7 @@ std::filesystem::path storeOf(const std::string& text, const ResultsCommand& com
   return isStore(text) ? std::filesystem::path(text) : command.file();
 }
 
-/// The difference between times of the same thing on the machines of a store's runs.
+/// The largest difference between times of repeated measurements, over the machines of a store's runs.
 TimeFloor floorOf(const std::filesystem::path& file) {
   const ResultsStore store(file, ResultsStore::Mode::read);
   TimeFloor floor;
@@ -297,7 +298,7 @@ TimeFloor floorOf(const std::filesystem::path& file) {
   return floor;
 }
 
-/// The runs that A or B of compare-runs stands for: a store, or one run of --store.
+/// The runs of A or B of compare-runs: those of a store, or one run of --store.
 std::vector<StoredRun> runsOf(const std::string& text, const ResultsCommand& command) {
   if (isStore(text)) return ResultsStore(text, ResultsStore::Mode::read).runs(command.asked());
   const ResultsStore store(command.file(), ResultsStore::Mode::read);

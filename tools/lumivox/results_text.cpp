@@ -25,7 +25,7 @@ std::string stateText(const ReportPoint& point) {
                                       : fmt::format("{} findings", point.healthFindings.size());
 }
 
-/// One line a run: its pipeline with the parameters that tell it from others, time, error and state.
+/// One line per run: its pipeline with the parameters that differ between runs, time, error and state.
 std::string shortRunsTable(const std::vector<StoredRun>& runs, const std::vector<const ReportPoint*>& points,
                            const std::string& output) {
   const std::vector<std::string> names = lineNames(points);

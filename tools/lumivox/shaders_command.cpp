@@ -1,4 +1,4 @@
-// shaders: the variants of every program, and any of them as GLSL.
+// shaders: lists the variants of every program, and prints any of them as GLSL.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string variantText(const shader::PackedProgram& program, const std::vector<
   return text.empty() ? "the only one" : text;
 }
 
-/// The values of "--variant a,b": one per axis, as its declaration writes them.
+/// The values of "--variant a,b": one per axis, in the words of its declaration.
 std::vector<int> parseVariant(const shader::PackedProgram& program, const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t start = 0; !text.empty() && start <= text.size();) {
@@ -67,7 +67,7 @@ std::vector<int> parseVariant(const shader::PackedProgram& program, const std::s
   return values;
 }
 
-/// Those of a technique, or the framework's own.
+/// The shader pack of a technique, or the framework's own.
 shader::ShaderPack packNamed(const std::string& name, TechniqueSet& techniques) {
   if (const Technique* technique = techniques.technique(name)) return technique->shaders;
   if (std::filesystem::exists(frameworkPack(name))) return shader::readShaderPack(frameworkPack(name));
@@ -111,7 +111,7 @@ int listPrograms(const ShadersCommand& command, const GlobalOptions& global) {
   const Scene scene = global.loadScene(command.scene);
   const auto device = global.openDevice();
   if (options.width == 0) {
-    constexpr int kSmall = 64;  // the size of the image asks for no other variant
+    constexpr int kSmall = 64;  // the needed variants do not depend on the image's size
     const Camera& camera = scene.camera(options.camera);
     std::tie(options.width, options.height) = reducedResolution(camera.width, camera.height, kSmall);
   }

@@ -1,4 +1,4 @@
-// stress: where each technique breaks.
+// stress: finds where each technique breaks.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ struct StressCommand {
   std::filesystem::path from;
 };
 
-/// This program again as a worker.
+/// The command line that starts this program as a worker.
 std::vector<std::string> workerProgram(const GlobalOptions& global) {
   std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string()};
   const std::vector<std::string> arguments = repeatArguments(global);
@@ -74,7 +74,7 @@ int tell(const StressSummary& summary, bool json) {
   return summary.sound() ? kGood : kNotGood;
 }
 
-/// Refuses, before the work, a folder in which the page or the cells beside it cannot be written.
+/// Throws, before the work, if the page or the cells beside it cannot be written into the folder.
 void checkOutput(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs) {
   if (folder.empty()) return;
   Outputs()
@@ -129,7 +129,7 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
                                  double secondsLeft) {
     const std::string what = fmt::format("{}, {}: {}", std::filesystem::path(cell.pipeline).stem().string(),
                                          cell.name, stressValueText(cell));
-    // What is well passes by in the line of progress.
+    // Stable and inapplicable cells appear only in the line of progress, unless --verbose is given.
     const bool well = cell.outcome == StressOutcome::stable || cell.outcome == StressOutcome::notApplicable;
     logMessage(well ? LogLevel::details : LogLevel::information, what);
     progress.show(done, total, secondsLeft, what);

@@ -1,4 +1,4 @@
-// sweep: measures what a results store does not hold yet.
+// sweep: measures the points that a results store does not have yet.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct SweepCommand {
 int sweep(const SweepCommand& command, const GlobalOptions& global) {
   SweepOptions options;
   options.measure = command.measure.asked(global);
-  // Texts of their own stand among the scenes.
+  // Sweep texts are among the positional texts: they are moved out of the scenes.
   std::vector<std::filesystem::path>& scenes = options.measure.scenes;
   const auto isScene = [](const std::filesystem::path& file) { return kindOfText(file) != TextKind::sweep; };
   const auto texts = std::stable_partition(scenes.begin(), scenes.end(), isScene);

@@ -47,7 +47,7 @@ struct CheckedFile {
   bool good() const { return findings.size() == warnings() && message.empty(); }
 };
 
-/// What a model holds besides is no matter of a check, unless more messages are asked for.
+/// Checks a scene without the messages on its models, which only --verbose shows.
 void checkLoading(const fs::path& file, const GlobalOptions& global) {
   const LogLevel level = logLevel();
   if (!global.verbose && level > LogLevel::warnings) setLogLevel(LogLevel::warnings);
@@ -89,7 +89,7 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
   } catch (const Error& error) {
     checked.message = error.what();
   }
-  // Pipelines of a sweep may bring the same warning at every point.
+  // The pipelines of a sweep may give the same warning at every point.
   std::vector<Diagnostic> findings = checked.findings;
   std::set<std::string> known;
   for (const Diagnostic& finding : findings) known.insert(finding.text());
@@ -141,7 +141,7 @@ int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& gl
 // ---- fmt
 
 int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool json, bool quiet) {
-  // All files are read before the first is written: one wrong text leaves every file as it was.
+  // All files are read before the first is written, so that one wrong text leaves all files unchanged.
   std::vector<Diagnostic> findings;
   std::vector<std::pair<fs::path, std::string>> changed;
   for (const fs::path& file : files) {

@@ -1,4 +1,4 @@
-// tune: the best technique and parameters within a time or an error.
+// tune: finds the best technique and parameters within a frame time or an error.
 #include <fmt/format.h>
 
 #include "common/outputs.h"
@@ -22,7 +22,7 @@ struct TuneCommand {
   std::filesystem::path output;
 };
 
-/// The light that is judged.
+/// The judged light in words.
 std::string lightText(const TuneOptions& options) {
   return options.output == kWholeImage ? "the whole image" : fmt::format("output '{}'", options.output);
 }

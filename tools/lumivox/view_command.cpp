@@ -1,4 +1,4 @@
-// view: starts the window, which is a program of its own, so that this one needs neither a display nor its
+// view: starts the window. It is a program of its own, so that this one needs neither a display nor its
 // libraries.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kProgram = "lumivox-view";
 
-/// In place of this program: the window's, with these words.
+/// Replaces this process by the window's program, with these words.
 int view(std::vector<std::string> words) {
   const auto here = programFile();
   const std::filesystem::path program =
@@ -39,11 +39,13 @@ int view(std::vector<std::string> words) {
 
 void addViewCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand("view", viewer::kViewMeaning);
-  // Read here as by the window's program, so that a wrong word is refused by the same sentence as anywhere.
+  // Parsed here as well as in the window's program, so that a wrong word gives the same message as in other
+  // commands.
   auto options = std::make_shared<viewer::ViewOptions>();
   options->addTo(*command);
-  // Options of every command may stand before `view`; the window's program knows them too. The words behind
-  // it are counted, since one before it may be called the same.
+  // Global options may stand before `view`; the window's program takes them too. Only the word `view` is
+  // removed. Its position follows from the number of words behind it, since an option's value before it may
+  // also be `view`.
   auto behind = std::make_shared<std::size_t>(0);
   command->preparse_callback([behind](std::size_t left) { *behind = left; });
   const std::vector<std::string>& words = commands.words;

@@ -1,4 +1,4 @@
-// voxels: every voxelizer on a scene, for time, memory and what its grid gets wrong.
+// voxels: measures every voxelizer on a scene: time, memory and the voxels that its grid gets wrong.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -29,7 +29,7 @@ struct VoxelsCommand {
   bool scaling = false, noSweep = false, json = false;
 };
 
-/// "64" and "32,64,128".
+/// Resolutions from texts such as "64" and "32,64,128".
 std::vector<int> resolutionsOf(const std::vector<std::string>& texts) {
   std::vector<int> resolutions;
   for (const std::string& text : texts)

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Plan: the columns stand on the rectangle kHalfLength x kHalfWidth around the courtyard; galleries lie
-// behind them.
+// Plan: the columns stand on the rectangle with the half sides kHalfLength and kHalfWidth around the
+// courtyard; galleries lie behind them.
 constexpr int kBaysLong = 6, kBaysWide = 3;
 constexpr double kHalfLength = 4.5, kHalfWidth = 2.1;  // m; bays of 1.5 m and 1.4 m
 constexpr double kGallery = 1.6;                       // m, from the columns' axis to the outer wall
@@ -24,7 +24,7 @@ constexpr double kColumnWidth = 0.36, kArcadeWall = 0.3;                       /
 constexpr double kRail = 0.9;                                                  // m above the upper floor
 constexpr int kShaftSides = 12, kArchSegments = 10;
 
-/// A storey's arcade: where it stands, where its arches spring from and where its wall ends.
+/// A storey's arcade: heights of its floor, of the springing of its arches and of the top of its wall.
 struct Storey {
   double floor, springing, top;
 };
@@ -101,7 +101,7 @@ void arch(ObjModel& model, const Side& s, int bay, const Storey& storey) {
   };
   const double front = -kArcadeWall / 2, back = kArcadeWall / 2;  // the front faces the courtyard
   const auto strip = [&](double x0, double y0, double x1, double y1) {
-    // outward = along x up: from the courtyard, `along` runs to the left.
+    // outward = along x up: seen from the courtyard, `along` points to the left.
     model.flatQuad(at(x1, y1, front), at(x0, y0, front), at(x0, storey.top, front),
                    at(x1, storey.top, front));
     model.flatQuad(at(x0, y0, back), at(x1, y1, back), at(x1, storey.top, back), at(x0, storey.top, back));
@@ -141,7 +141,7 @@ void balustrade(ObjModel& model, const Side& s, int bay, bool rail) {
   model.box(glm::min(a, b), glm::max(a, b), ObjModel::Facing::outward, s.along.x != 0 ? "yYzZ" : "xXyY");
 }
 
-/// A cloth that hangs before an arch: folds that deepen towards the hem.
+/// A cloth that hangs in front of an arch, with folds that deepen towards the hem.
 void cloth(ObjModel& model, const Side& s, int bay) {
   constexpr int kAcross = 12, kDown = 6;
   constexpr double kTop = kUpperFloor - kSlab, kLength = 1.9, kFolds = 3.0, kDepth = 0.09, kInset = 0.3;  // m

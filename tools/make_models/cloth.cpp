@@ -1,4 +1,4 @@
-// A sheet that deforms from frame to frame, so that deformation is tested where no other model is.
+// A cloth that deforms from frame to frame, for tests of deformation without any other model.
 #include <fmt/format.h>
 
 #include <cmath>

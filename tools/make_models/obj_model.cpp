@@ -43,8 +43,8 @@ void ObjModel::object(const std::string& name, const std::string& material) {
 }
 
 glm::ivec3 ObjModel::corner(const Vertex& vertex) {
-  // A tenth of a millimetre, a thousandth of a unit normal and of a texture are finer than any test of these
-  // scenes can see.
+  // Rounded to 0.1 mm, and to 0.001 in normals and texture coordinates: finer than any test of these scenes
+  // resolves.
   const std::string texcoord = decimal(vertex.texcoord.x, 3) + ' ' + decimal(vertex.texcoord.y, 3);
   return {indexOf(vectorText(vertex.position, 4), positions_, positionOf_),
           indexOf(texcoord, texcoords_, texcoordOf_),
@@ -71,7 +71,7 @@ Vertex ObjModel::flatVertex(const glm::dvec3& position, const glm::dvec3& normal
 
 void ObjModel::flatTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 cross = glm::cross(b - a, c - a);
-  // Without area there is no normal; the stress models hold such triangles on purpose.
+  // A triangle without area has no normal. The stress models contain such triangles on purpose.
   const glm::dvec3 normal = glm::length(cross) > 0 ? glm::normalize(cross) : glm::dvec3(0, 1, 0);
   triangle(flatVertex(a, normal), flatVertex(b, normal), flatVertex(c, normal));
 }

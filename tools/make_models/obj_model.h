@@ -32,19 +32,20 @@ class ObjModel {
   ObjModel(std::string name, std::string comment);
 
   void material(ObjMaterial material) { materials_.push_back(std::move(material)); }
-  /// Later faces belong to this object and have this material (declared before).
+  /// Starts an object: all faces up to the next one belong to it and have this material, which is declared
+  /// before.
   void object(const std::string& name, const std::string& material);
 
   void triangle(const Vertex& a, const Vertex& b, const Vertex& c);
   /// Corners counter-clockwise as seen from the front.
   void quad(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d);
-  /// Each triangle with its own geometric normal; texture coordinates are metres along the two axes that the
-  /// normal faces least, divided by `textureSize`.
+  /// Each triangle has its own geometric normal. Texture coordinates are metres along the two axes to which
+  /// the normal is most perpendicular, divided by `textureSize`.
   void flatQuad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
   void flatTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
   enum class Facing { outward, inward };
-  /// Six faces between two corners. `faces` leaves some out: any of "xXyYzZ", a capital being the face on the
-  /// high side.
+  /// An axis-aligned box between two corners. `faces`: those to add, any of "xXyYzZ", where a capital letter
+  /// is the face on the high side.
   void box(const glm::dvec3& low, const glm::dvec3& high, Facing facing = Facing::outward,
            const std::string& faces = "xXyYzZ");
   /// A rectangular ring around the Y axis between heights y0 and y1; extents are half sizes in X and Z.
@@ -52,8 +53,8 @@ class ObjModel {
 
   double textureSize = 1.0;  ///< metres of a surface that one repetition of its texture covers
 
-  /// Off: none are written, and a scene smooths by its 'crease'. The frames of a sequence must have the same
-  /// faces, and equal normals are written once.
+  /// If false, no normals are written, and the scene smooths by its 'crease'. The frames of a sequence need
+  /// this: their faces must be equal, but equal normals share one index.
   bool writesNormals = true;
 
   std::size_t triangleCount() const { return faces_.size(); }

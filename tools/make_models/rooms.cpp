@@ -46,7 +46,7 @@ void writeCornell(const std::filesystem::path& directory) {
   model.object("left_wall", "red");
   model.flatQuad(m(552.8, 0, 0), m(549.6, 0, 559.2), m(556, 548.8, 559.2), m(556, 548.8, 0));
 
-  // Ceiling and area light share their edges: nothing lies upon anything.
+  // Ceiling and area light share edges, so that no surface lies upon another.
   const glm::dvec3 ceiling[4] = {m(556, 548.8, 0), m(556, 548.8, 559.2), m(0, 548.8, 559.2), m(0, 548.8, 0)};
   const glm::dvec3 areaLight[4] = {m(343, 548.8, 227), m(343, 548.8, 332), m(213, 548.8, 332),
                                    m(213, 548.8, 227)};
@@ -63,8 +63,8 @@ void writeCornell(const std::filesystem::path& directory) {
   model.write(directory);
 }
 
-// An L: leg A along -Z from the camera, leg B along +X behind the corner, 2 m wide and 2.5 m high. From leg A
-// nothing of leg B beyond x = 1.4 m can be seen, so a light that shines along +X from x = 2 m or further is
+// An L: leg A along -Z from the camera, leg B along +X behind the corner, 2 m wide and 2.5 m high. Leg B
+// beyond x = 1.4 m is not visible from leg A, so a light that shines along +X from x = 2 m or further is
 // never seen directly.
 void writeCorridor(const std::filesystem::path& directory) {
   ObjModel model("corridor", "An L-shaped corridor");
@@ -94,7 +94,7 @@ void writeCorridor(const std::filesystem::path& directory) {
   model.box({1, 0, -8}, {7, height, -6}, Facing::inward, "zZ");
   model.object("lit_wall", "orange");
   model.box({1, 0, -8}, {7, height, -6}, Facing::inward, "X");
-  // Things for the indirect light to cast soft shadows of; the bottoms that stand on the floor are left out.
+  // Objects that cast soft shadows in the indirect light. Bottom faces on the floor are left out.
   model.object("crate", "crate");
   model.box({0.35, 0, -5.2}, {0.95, 0.6, -4.6}, Facing::outward, "xXYzZ");
   model.object("pillar", "plaster");
@@ -102,8 +102,8 @@ void writeCorridor(const std::filesystem::path& directory) {
   model.write(directory);
 }
 
-// Albedo a and emission e on every face of a closed room: the radiance everywhere and in every direction is e
-// / (1 - a) = 2.
+// White furnace: with albedo a and emission e on every face of a closed room, the radiance is e / (1 - a) = 2
+// everywhere and in every direction.
 void writeFurnace(const std::filesystem::path& directory) {
   ObjModel model("furnace", "A closed room of albedo 0.5 that emits radiance 1 inwards: 2 everywhere");
   model.material({.name = "ember", .diffuse = glm::dvec3(0.5), .emission = glm::dvec3(1)});

@@ -1,5 +1,4 @@
-// Textures of the arcade and of tables: small, made of a few lines of arithmetic, and repeating without a
-// seam.
+// Textures of the arcade and of tables: small, procedural, and periodic without a seam.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -13,8 +12,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A value in [0,1) for a point of an integer lattice: the finaliser of MurmurHash3 (Appleby 2011) over both
-/// coordinates.
+/// A pseudo-random value in [0,1) for a point of an integer lattice: the finaliser of MurmurHash3 (Appleby
+/// 2011) over both coordinates.
 double speckle(int x, int y, std::uint32_t salt) {
   std::uint32_t h =
       static_cast<std::uint32_t>(x) * 0x9e3779b1u + static_cast<std::uint32_t>(y) * 0x85ebca77u + salt;
@@ -34,8 +33,8 @@ ImageBuffer paint(int size, int channels, const std::function<glm::dvec3(double 
   return image;
 }
 
-/// Position within a course of blocks: which block, and how far its nearest edge is (in units of the
-/// image).
+/// Position within a course of blocks: the block, and the distance to its nearest edge (the image's side is
+/// 1).
 struct Block {
   int column, row;
   double edge;
@@ -44,7 +43,7 @@ Block blockAt(double u, double v, int columns, int rows) {
   const int row = static_cast<int>(v * rows);
   const double shifted = u * columns + (row % 2) * 0.5;
   const int column =
-      static_cast<int>(std::floor(shifted)) % columns;  // half blocks at the seam are one block
+      static_cast<int>(std::floor(shifted)) % columns;  // the two halves at the seam belong to one block
   const double x = shifted - std::floor(shifted), y = v * rows - row;
   return {column, row, std::min(std::min(x, 1 - x) / columns, std::min(y, 1 - y) / rows)};
 }

@@ -1,7 +1,7 @@
 // Bodies of revolution and tables with as many vertices as the models of Dong et al. (2007), which are not
-// public: their elements are vertices, so that these numbers decide what the method costs and where it leaks.
-// Only seams in the texture hold a point twice; no normals are written, and scenes smooth them by 'crease 180
-// deg', so that a loader makes one vertex of each pair of position and texture coordinate.
+// public. The method's elements are vertices, so their number determines its cost and where it leaks. A point
+// occurs twice only at texture seams. No normals are written, and scenes smooth by 'crease 180 deg': so a
+// loader makes one vertex of each pair of position and texture coordinate.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -18,19 +18,20 @@ constexpr double kPi = std::numbers::pi;
 /// A profile of radius and height, from the axis at the bottom to the axis at the top.
 using Profile = std::vector<glm::dvec2>;
 
-/// A point of the Catmull-Rom spline through a profile, `at` from 0 to 1 in spans of equal number.
+/// A point of the Catmull-Rom spline through a profile. `at`: 0 at the first point, 1 at the last, with an
+/// equal share for each span.
 glm::dvec2 splinePoint(const Profile& profile, double at) {
   const int spans = static_cast<int>(profile.size()) - 1,
             span = std::min(static_cast<int>(at * spans), spans - 1);
   const double t = at * spans - span;
   const auto point = [&](int i) { return profile[static_cast<std::size_t>(std::clamp(i, 0, spans))]; };
   const glm::dvec2 a = point(span - 1), b = point(span), c = point(span + 1), d = point(span + 2);
-  // Nothing lies below the table or beyond the axis, however the spline swings.
+  // The spline may overshoot: clamped to the table's plane and the axis.
   return glm::max(b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a))),
                   glm::dvec2(0.0));
 }
 
-/// So many points, the ends included, at equal lengths along the spline.
+/// `count` points at equal arc lengths along the spline, including both ends.
 Profile evenly(const Profile& profile, int count) {
   constexpr int kSteps = 4096;
   Profile fine;
@@ -53,8 +54,8 @@ struct Chart {
   glm::dvec2 low{0.0}, size{1.0};
 };
 
-/// Turns a profile about the Y axis: `rings` between the poles, `columns` of them around, the first and the
-/// last in the same places. A pole is one vertex, or with `split` one for every triangle at it.
+/// Revolves a profile about the Y axis: `rings` between the poles, of `columns` vertices each; the first and
+/// the last column coincide. A pole is one vertex or, with `split`, one for every triangle at it.
 void turn(ObjModel& model, const Profile& profile, int rings, int columns, bool split, const Chart& chart) {
   const Profile points = evenly(profile, rings + 2);
   const auto at = [&](int ring, double column) {
@@ -101,7 +102,7 @@ struct Fineness {
   int rings, columns, handleRings, handleColumns;
 };
 
-// 44 cm high on y = 0, closed by a lid with a knob, with two handles.
+// An urn, 44 cm high on y = 0, closed by a lid with a knob, with two handles.
 void writeUrn(const std::filesystem::path& directory, const std::string& name, const Fineness& fineness) {
   const Profile profile = {{0, 0},        {0.08, 0},      {0.082, 0.012}, {0.045, 0.035}, {0.06, 0.075},
                            {0.125, 0.15}, {0.15, 0.23},   {0.125, 0.305}, {0.065, 0.34},  {0.085, 0.365},
@@ -159,9 +160,9 @@ void writeTurned(const std::filesystem::path& directory) {
   piece.write(directory);
 }
 
-// A square of side 1 facing up, in 17 x 12 cells: its 234 vertices and the 3,644 of the teapot are those of
-// the teapot's picture (Fig. 1). And a disc of radius 1 of 796 vertices, which with the fine urn are the
-// 3,378 of Table 1.
+// A square of side 1 facing up, in 17 x 12 cells: its 234 vertices and the 3,644 of the teapot make up the
+// count of the teapot's picture (Fig. 1). A disc of radius 1 with 796 vertices: with the fine urn they are
+// the 3,378 of Table 1.
 void writeTables(const std::filesystem::path& directory) {
   ObjModel table("table", "A square of side 1 about the origin, facing up (+Y), of 234 vertices");
   table.material({.name = "white", .diffuse = {0.7, 0.7, 0.7}});

@@ -1,4 +1,5 @@
-// A thin vase, lit from one side: voxels as wide as several of its walls hold both of their sides.
+// A vase whose wall is thinner than a voxel, to be lit from one side: such a voxel contains both sides of the
+// wall.
 #include <cmath>
 #include <numbers>
 
@@ -7,17 +8,17 @@
 
 namespace lumivox::models {
 
-// 45 cm high about the Y axis from y = 0 on, its wall 6 mm thick: an outer and an inner surface of revolution
-// that meet at the rim, and the bottom of each.
+// 45 cm high about the Y axis, on y = 0, with a wall 6 mm thick: an outer and an inner surface of revolution
+// that meet at the rim, each with a bottom.
 void writeVase(const std::filesystem::path& directory) {
   constexpr int kAround = 32, kUp = 14;
   constexpr double kHeight = 0.45, kWall = 0.006, kPi = std::numbers::pi;
   ObjModel model("vase", "A vase whose wall is 6 mm thick, 45 cm high, about the Y axis");
   model.material({.name = "clay", .diffuse = {0.68, 0.6, 0.5}});
-  // Wide at the rim, so that a camera above it looks in.
+  // Wide at the rim, so that a camera above sees the inside.
   const auto radius = [](double up) { return 0.09 + 0.06 * up + 0.02 * std::sin(2.0 * kPi * up); };
   const auto slope = [](double up) {
-    return (0.06 + 0.04 * kPi * std::cos(2.0 * kPi * up)) / kHeight;  // of the radius by height
+    return (0.06 + 0.04 * kPi * std::cos(2.0 * kPi * up)) / kHeight;  // derivative of the radius by height
   };
   const auto at = [&](bool inside, int around, int up) {
     const double angle = 2.0 * kPi * around / kAround, height = static_cast<double>(up) / kUp,
@@ -36,7 +37,7 @@ void writeVase(const std::filesystem::path& directory) {
                      c = at(inside, around + 1, up + 1), d = at(inside, around, up + 1);
         inside ? model.quad(a, b, c, d) : model.quad(a, d, c, b);
       }
-    // The bottom, seen from below outside and from above inside.
+    // The bottoms: the outer faces down, the inner faces up.
     for (int around = 0; around < kAround; ++around) {
       const glm::dvec3 a = at(inside, around, 0).position, b = at(inside, around + 1, 0).position,
                        middle(0.0, a.y, 0.0);

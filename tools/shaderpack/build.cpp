@@ -74,7 +74,7 @@ std::map<std::string, std::map<gpu::Stage, std::filesystem::path>> entryFiles(
   if (!std::filesystem::is_directory(folder))
     throw Error(fmt::format("{}: no such folder of shaders", folder.string()));
   std::map<std::string, std::map<gpu::Stage, std::filesystem::path>> entries;
-  // Folders below it sort the files for readers: a program is named by its stem alone.
+  // Subfolders only sort the files for readers: a program is named by its file's stem alone.
   std::set<std::filesystem::path> files;
   for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) files.insert(file.path());
   for (const std::filesystem::path& file : files) {
@@ -140,7 +140,7 @@ void collectAxes(ProgramPlan& plan) {
   }
 }
 
-/// The product of the axes, the last fastest, without what the constraints exclude.
+/// All combinations of axis values, the last axis fastest, without those that a constraint excludes.
 void enumerateVariants(ProgramPlan& plan) {
   for (std::size_t number = 0; number < plan.possible; ++number) {
     ProgramPlan::Variant variant;
@@ -159,8 +159,8 @@ void enumerateVariants(ProgramPlan& plan) {
   }
 }
 
-/// Macros of the axes that a stage mentions; a stage that does not mention an axis is the same for all its
-/// values.
+/// The stage with macros for the axes that it mentions. A stage that does not mention an axis is compiled
+/// once for all values of that axis.
 StageSource stageSource(const ProgramPlan& plan, const ProgramStage& stage, const std::vector<int>& values) {
   StageSource source{&stage.source, stage.stage, {}, {}};
   for (std::size_t i = 0; i < plan.axes.size(); ++i) {
@@ -216,7 +216,7 @@ void runJobs(const BuildOptions& options, std::vector<std::unique_ptr<Job>>& job
   work();
 }
 
-/// Artifacts of sources that nobody has used for a month.
+/// Removes cached artifacts that no build has used for a month.
 void forgetOldArtifacts(const BuildOptions& options) {
   constexpr auto kKept = std::chrono::hours(24 * 30);
   std::error_code ignored;
@@ -230,7 +230,7 @@ std::string errorAt(const Job& job, const std::string& identifier, const std::st
   return fmt::format("{}: error: {}", job.source.source->placeOf(identifier).text(), what);
 }
 
-/// Gathers what the stages of all variants declare, and reports where they contradict one another.
+/// Collects the declarations of the stages of all variants, and reports contradictions among them.
 class Merger {
  public:
   Merger(const ProgramPlan& plan, PackedProgram& program, ProgramInterface& interface, Findings& findings)
@@ -337,7 +337,7 @@ class Merger {
     }
   }
 
-  /// The inputs of a stage must be the outputs of the stage before it.
+  /// Every input of a stage must be an output of the stage before it.
   void stageInterfaces(const ProgramPlan::Variant& variant) {
     for (std::size_t i = 1; i < variant.jobs.size(); ++i) {
       const Artifact& before = variant.jobs[i - 1]->artifact;
@@ -368,7 +368,7 @@ class Merger {
   bool sameGroupSize_ = true;
 };
 
-/// Keeps every code once.
+/// Stores each distinct SPIR-V module once.
 class CodeTable {
  public:
   explicit CodeTable(std::vector<shader::PackedCode>& codes) : codes_(codes) {}

@@ -1,4 +1,4 @@
-// One technique: its entry files to programs, variants, checks and a pack.
+// Builds one technique: programs and variants from its entry files, checks, and the pack.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace lumivox::shaderpack {
 
 struct BuildOptions {
   std::string technique;
-  std::filesystem::path source;  ///< folder of the entry files, in it and in folders below
+  std::filesystem::path source;  ///< folder of the entry files, which may lie in subfolders
   std::vector<std::filesystem::path> includes;
   std::filesystem::path cache;
   unsigned threads = 0;  ///< 0: one per core
@@ -23,7 +23,7 @@ struct BuildOptions {
 /// Data of a program that the generated header needs beyond the pack.
 struct ProgramInterface {
   std::vector<StructLayout> structs;                  ///< nested ones first
-  std::map<std::string, std::uint32_t> elementBytes;  ///< of storage blocks that end with an open array
+  std::map<std::string, std::uint32_t> elementBytes;  ///< stride of a storage block's unsized last array
   std::vector<std::uint32_t> groupSize;  ///< empty: no compute shader, or not the same in every variant
 };
 
@@ -35,10 +35,10 @@ struct BuildResult {
   std::string warnings;
 };
 
-/// Throws Error with every finding, "file:line: error: ..." each.
+/// Throws Error with all findings, each as "file:line: error: ...".
 BuildResult buildPack(const BuildOptions& options);
 
-/// The C++ side of the interfaces.
+/// The text of the C++ header for the shader interfaces.
 std::string generateHeader(const BuildResult& result);
 
 }  // namespace lumivox::shaderpack

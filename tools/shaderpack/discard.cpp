@@ -1,6 +1,6 @@
-// An invocation that a discard has ended leaves the derivatives of its neighbours in the 2 x 2 pixels
-// undefined (GLSL 4.50, 6.4), and with them the mip level of a sample that asks for none. Some drivers
-// forgive it; images have wrong texels along every mask's edge on the others.
+// After a discard, derivatives are undefined in the neighbours of the discarded pixel in its 2 x 2 quad (GLSL
+// 4.50, 6.4). So is the mip level of a texture sample that states no level. Some drivers compute them all the
+// same; on the others images have wrong texels along the edge of every mask.
 #include <fmt/format.h>
 
 #include <map>
@@ -33,7 +33,8 @@ bool samplesByDerivatives(spv::Op operation) {
   }
 }
 
-/// In the order of the text, which is the order of execution: GLSL jumps back in loops only.
+/// Walks the instructions in the order of the module. That is the order of execution, since GLSL jumps back
+/// in loops only.
 class Walk {
  public:
   explicit Walk(const std::vector<std::uint32_t>& words) {
@@ -50,8 +51,8 @@ class Walk {
     }
   }
 
-  /// A use of derivatives that a discard may have made undefined: the name of the sampler, "" for a
-  /// derivative; nothing where all is well.
+  /// The first use of derivatives that a discard may have made undefined: the sampler's name, or "" for an
+  /// explicit derivative. Nothing if there is none.
   std::optional<std::string> run() {
     follow(entry_);
     if (late_.empty()) return std::nullopt;
@@ -66,7 +67,7 @@ class Walk {
   struct Loop {
     Id end;
     bool discards = false;
-    std::vector<std::string> needs;  ///< derivatives: in the next turn they come after the discard
+    std::vector<std::string> needs;  ///< uses of derivatives; in the next iteration they follow the discard
   };
 
   void follow(Id function) {
@@ -103,8 +104,8 @@ class Walk {
   Id entry_ = 0;
   std::map<Id, std::vector<Instruction>> bodies_;
   std::map<Id, std::string> names_;
-  std::map<Id, Id> variables_;  ///< of loaded values
-  std::vector<Loop> loops_;     ///< open ones
+  std::map<Id, Id> variables_;  ///< that a loaded value comes from
+  std::vector<Loop> loops_;     ///< those that enclose the current instruction
   bool discarded_ = false;
   std::vector<std::string> late_;
 };

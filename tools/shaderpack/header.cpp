@@ -39,7 +39,7 @@ std::string slotName(const shader::PackedBinding& binding) {
 std::string structText(const StructLayout& layout) {
   std::string text = fmt::format("struct alignas(16) {} {{\n", layout.name);
   for (const Member& member : layout.members) {
-    // The compiler puts the members where std140 does when each has std140's alignment.
+    // With std140's alignment on each member, the C++ compiler gives it its std140 offset.
     const std::string type = member.arrayLength > 0
                                  ? fmt::format("std::array<{}, {}>", member.type, member.arrayLength)
                                  : member.type;
@@ -85,7 +85,7 @@ std::string variantText(const shader::PackedProgram& program) {
 
 std::string constantsText(const shader::PackedProgram& program) {
   std::string members, list;
-  // By their numbers, so that the order of the members is that of the shader's author.
+  // Sorted by number: the members keep the order that the shader's author chose.
   std::vector<shader::PackedConstant> constants = program.constants;
   std::sort(constants.begin(), constants.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   for (const shader::PackedConstant& constant : constants) {
@@ -104,7 +104,7 @@ std::string constantsText(const shader::PackedProgram& program) {
         list += fmt::format("{{{}, {}}}, ", constant.id, constant.name);
         break;
       case ConstantType::real:
-        // Through the bits, so that the default is exact and may be infinite.
+        // Written as bits, so that the default is exact and may be infinite.
         members += fmt::format("  float {} = std::bit_cast<float>(0x{:08x}u);  // {}\n", constant.name, bits,
                                std::bit_cast<float>(bits));
         list += fmt::format("{{{}, std::bit_cast<std::uint32_t>({})}}, ", constant.id, constant.name);
@@ -155,7 +155,7 @@ void checkSlotNames(const std::string& technique, const shader::PackedProgram& p
 
 std::string generateHeader(const BuildResult& result) {
   const shader::ShaderPack& pack = result.pack;
-  // A block that all programs lay out alike is one C++ type for all of them.
+  // A block with the same layout in all programs becomes one C++ type that they share.
   std::map<std::string, StructLayout> shared;
   std::set<std::string> different;
   std::vector<std::string> order;
@@ -166,7 +166,7 @@ std::string generateHeader(const BuildResult& result) {
       if (known->second != layout) different.insert(layout.name);
     }
   }
-  // A struct that holds a struct of which there are several is different in every program too.
+  // A struct with a member whose layout differs between programs differs between them too.
   for (bool grew = true; grew;) {
     grew = false;
     for (const auto& [name, layout] : shared) {
@@ -201,7 +201,7 @@ std::string generateHeader(const BuildResult& result) {
                   ? structText(layout)
                   : fmt::format("using {0} = shaders::{1}::{0};\n", layout.name, pack.technique);
     }
-    std::set<std::string> written;  // a binding whose format follows an axis is there once per format
+    std::set<std::string> written;  // a binding whose format depends on an axis occurs once per format
     for (const shader::PackedBinding& binding : program.bindings) {
       if (written.insert(binding.name).second)
         text += slotText(binding, interface.elementBytes.at(binding.name));

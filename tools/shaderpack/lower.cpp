@@ -1,6 +1,6 @@
-// Drivers differ in how they expand matrix products, normalize and asin, and one driver differs from itself
-// between SPIR-V and GLSL. Here they become sums and products in one stated order, so that both routes, and
-// all drivers, compute the same expression.
+// Drivers expand matrix products, normalize and asin differently, and one driver differs between SPIR-V and
+// GLSL. This pass replaces them by sums and products in a fixed order, so that all drivers compute the same
+// expression from either form.
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <cassert>
@@ -103,7 +103,8 @@ class Lowering {
       case spv::OpMemberDecorate:
         break;
       default:
-        // A value: its type comes first. Only types of floats and their composites are asked for.
+        // The first word of an instruction with a result is its type. Callers ask only for floats and their
+        // composites.
         if (isType(instruction.operation)) {
           types_.insert(w[0]);
         } else if (w.size() >= 2 && (types_.contains(w[0]) || composites_.contains(w[0]))) {
@@ -135,8 +136,8 @@ class Lowering {
     return emit(spv::OpExtInst, type, std::move(arguments));
   }
 
-  /// matrix * vector = column 0 * x + column 1 * y + ..., summed from the left. The last sum goes to `result`
-  /// when that is not 0.
+  /// matrix * vector = column 0 * x + column 1 * y + ..., summed from the left. The last sum gets the id
+  /// `result` unless that is 0.
   Id matrixTimesVector(Id matrix, Id vector, Id columnType, std::uint32_t columns, Id result) {
     const Id scalarType = composites_.at(columnType).element;
     Id sum = 0;

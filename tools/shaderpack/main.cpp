@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Leaves a file alone that would not change, so that nothing which depends on it is built again.
+/// Writes only a file that changes, so that the build does not repeat the targets that depend on it.
 void writeIfChanged(const fs::path& path, const std::string& text) {
   if (fs::is_regular_file(path) && lumivox::readFile(path) == text) return;
   lumivox::createParentDirectories(path);

@@ -64,7 +64,7 @@ std::optional<gpu::Format> imageFormat(spv::ImageFormat format) {
 }
 
 const char* formatName(gpu::Format format) {
-  // In the order of the enumeration; the names of gpu::name, which this program does not link.
+  // The names of gpu::name() in the order of the enumeration: this program does not link the gpu library.
   constexpr const char* kNames[] = {"r8",    "rgba8",   "r16f",  "rg16f",  "rgba16f",  "r32f",
                                     "rg32f", "rgba32f", "r32ui", "rg32ui", "rgba32ui", "depth32f"};
   return kNames[static_cast<std::size_t>(format)];

@@ -33,8 +33,8 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// A line without its comments, so that a directive in a comment is none. `inBlock` lives on from line to
-/// line.
+/// The line without comments, so that a directive inside a comment has no effect. `inBlock`: whether the line
+/// begins within a block comment; updated for the next line.
 std::string withoutComments(const std::string& line, bool& inBlock) {
   std::string kept;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -127,8 +127,8 @@ class Expander {
       fail(place, fmt::format("cannot find \"{}\"; searched{}", name, sought));
     }
     const std::filesystem::path file = found->lexically_normal();
-    // Every file counts once. The guard lets the preprocessor decide when the first mention is inside a
-    // condition.
+    // Every file is included once. Where the first #include stands inside a condition, a guard leaves that to
+    // the preprocessor.
     if (std::find(open_.begin(), open_.end(), file) != open_.end() || certain_.contains(file)) return;
     if (conditionDepth_ == 0) certain_.insert(file);
     const auto [guard, isNew] = guards_.emplace(file, fmt::format("LUMIVOX_INCLUDED_{}", guards_.size()));
@@ -192,7 +192,7 @@ class Expander {
   ExpandedSource& result_;
   const std::vector<std::filesystem::path>& roots_;
   std::vector<std::filesystem::path> open_;
-  std::set<std::filesystem::path> certain_;  // included where no condition can switch it off
+  std::set<std::filesystem::path> certain_;  // included outside of all conditions
   std::map<std::filesystem::path, std::string> guards_;
   int conditionDepth_ = 0;
 };
@@ -325,7 +325,7 @@ SourcePlace ExpandedSource::placeOf(const std::string& identifier) const {
       here = {line.substr(quote + 1, line.size() - quote - 2), std::stoi(line.substr(6)) - 1, 0};
       continue;
     }
-    // Guards of includes stand between the original lines; the next #line puts the count right again.
+    // The include guards add lines that the file does not have; the next #line corrects the count.
     ++here.line;
     if (!mentions(line)) continue;
     for (const char* word : {"uniform", "buffer", "layout", "constant_id"}) {

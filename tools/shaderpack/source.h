@@ -1,4 +1,4 @@
-// Shader sources as authors write them: includes, and what `#pragma lumivox` lines declare.
+// Shader sources as authors write them: includes, and the declarations of `#pragma lumivox` lines.
 #pragma once
 
 #include <filesystem>
@@ -23,8 +23,8 @@ struct Requirement {
   SourcePlace place;
 };
 
-/// An entry file with everything that it includes. `#line` directives in the text lead back to the original
-/// files.
+/// An entry file with everything that it includes. `#line` directives in the text name the original files and
+/// lines.
 struct ExpandedSource {
   std::filesystem::path entry;
   std::string text;
@@ -32,7 +32,7 @@ struct ExpandedSource {
   std::vector<AxisDeclaration> axes;
   std::vector<Requirement> requirements;
 
-  /// Where a global name is declared, as well as a search of the text can tell; the entry file otherwise.
+  /// Where a global name is declared, found by a search of the text; the entry file if the search fails.
   SourcePlace placeOf(const std::string& identifier) const;
 };
 

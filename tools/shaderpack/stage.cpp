@@ -19,10 +19,10 @@
 namespace lumivox::shaderpack {
 namespace {
 
-// Counts up whenever this program makes something else of the same source.
+// Raise it whenever this program compiles the same source to something different.
 constexpr int kArtifactVersion = 8;
 
-// Line numbers follow from "#line N "file"" directives, which need this extension.
+// `#line N "file"` directives need this extension.
 constexpr const char* kPreamble =
     "#version 450 core\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
 
@@ -74,8 +74,9 @@ LogLine readLogLine(std::string line, const StageSource& source) {
   return result;
 }
 
-/// glslang's "ERROR: file:line: what" in the form that editors follow: "file:line: error: what". Below the
-/// last error of a line stands the line itself. Warnings go without: their text is part of the artifact.
+/// glslang's "ERROR: file:line: what" in the form that editors follow: "file:line: error: what". The last
+/// error of a source line is followed by that line. Warnings are not, since their text is part of the
+/// artifact.
 std::string readableLog(const std::string& log, const StageSource& source, bool warnings) {
   std::vector<LogLine> found;
   std::istringstream lines(log);
@@ -101,8 +102,8 @@ std::string readableLog(const std::string& log, const StageSource& source, bool 
   throw Error(fmt::format("{}: error: {}", source.source->entry.string(), what));
 }
 
-/// glslang puts what has no binding at 0, where it would share with something else; the SPIR-V does not tell
-/// the difference.
+/// Every block and sampler must state its binding. glslang gives binding 0 to one that does not, where it may
+/// collide with another, and SPIR-V cannot show that the binding was missing.
 void requireBindings(const glslang::TIntermediate& tree, const StageSource& source) {
   const auto* root = tree.getTreeRoot()->getAsAggregate();
   if (root == nullptr || root->getSequence().empty()) return;
@@ -164,7 +165,7 @@ std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, con
         if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
       });
   optimizer.RegisterPerformancePasses();
-  optimizer.RegisterPass(spvtools::CreateCompactIdsPass());  // small numbers deflate better
+  optimizer.RegisterPass(spvtools::CreateCompactIdsPass());  // small ids compress better
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // validated below, after optimisation
   std::vector<std::uint32_t> optimised;

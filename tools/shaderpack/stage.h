@@ -15,7 +15,7 @@ namespace lumivox::shaderpack {
 /// A member of a std140 block or of a struct in one.
 struct Member {
   std::string name;
-  std::string type;  ///< in C++: "float", "glm::vec3", or the name of a nested struct
+  std::string type;  ///< as in C++: "float", "glm::vec3", or the name of a nested struct
   std::uint32_t offset = 0;
   std::uint32_t alignment = 4;    ///< std140
   std::uint32_t arrayLength = 0;  ///< 0: no array
@@ -40,7 +40,7 @@ struct Artifact {
   std::vector<shader::PackedBinding> bindings;  ///< as declared
   std::vector<std::string>
       layouts;  ///< per binding: offsets and types of a block's members; empty for textures
-  /// Per binding: of the array of open length at the end of a storage block, from one element to the next.
+  /// Per binding: the stride in bytes of the unsized array that ends a storage block.
   std::vector<std::uint32_t> elementBytes;
   std::vector<std::uint8_t> used;     ///< per binding: still there after optimisation
   std::vector<StructLayout> structs;  ///< of uniform blocks; nested ones before those that hold them
@@ -58,28 +58,28 @@ struct StageSource {
   std::string definitions;  ///< #define lines
   std::string variant;      ///< for messages: "TEXTURES=1"
 
-  /// Of everything that the artifact depends on, the compiler included.
+  /// Hash of everything that the artifact depends on, including the compiler.
   ContentHash key() const;
 };
 
-/// Before the first compile of the process.
+/// Call it before the first compileStage() of the process.
 void startCompiler();
 /// Throws Error with "file:line: error: ..." lines.
 Artifact compileStage(const StageSource& source);
 
-/// Reflection: fills everything but code and warnings. `declared` is the module as compiled, `optimised` what
-/// is left of it.
+/// Reflection: fills everything but code and warnings. `declared` is the module as compiled, `optimised` the
+/// module after optimisation.
 void reflect(const std::vector<std::uint32_t>& declared, const std::vector<std::uint32_t>& optimised,
              const StageSource& source, Artifact& artifact);
 
-/// Matrix products, normalize and asin as sums and products in one order; see lower.cpp.
+/// Replaces matrix products, normalize and asin by sums and products in a fixed order; see lower.cpp.
 std::vector<std::uint32_t> lowerToPlainArithmetic(const std::vector<std::uint32_t>& words);
 
-/// Throws Error where a fragment shader needs derivatives, or samples with a mip level that follows from
-/// them, after a discard.
+/// Throws Error if a fragment shader computes derivatives after a discard, or samples with a mip level that
+/// depends on them.
 void requireDerivativesBeforeDiscard(const std::vector<std::uint32_t>& words, const StageSource& source);
 
-/// For the cache. Nothing comes back for bytes that are not a whole artifact.
+/// For the cache. Bytes that are not a complete artifact give no result.
 std::string serialise(const Artifact& artifact);
 std::optional<Artifact> deserialise(std::string_view bytes);
 

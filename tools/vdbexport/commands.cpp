@@ -95,7 +95,8 @@ struct Session {
   }
 
  private:
-  /// Findings of the pipeline come before the work of loading models.
+  /// Loads the scene only after the pipeline was checked, so that its findings come before the work of
+  /// loading models.
   Scene sceneOnceChecked(const fs::path& file, const GlobalOptions& global) {
     checkPipeline(pipeline, techniques);
     return global.loadScene(file);
@@ -108,7 +109,8 @@ struct Session {
 
 namespace {
 
-/// Refuses an empty grid: in a sequence it is a frame without smoke, else there is nothing to look at.
+/// Grids without active voxels: an Error if all grids of a single frame are empty, else a warning, since a
+/// frame of a sequence may be without smoke.
 void refuseEmpty(const std::vector<openvdb::GridBase::ConstPtr>& grids, bool sequence, const fs::path& file) {
   std::vector<std::string> empty;
   for (const auto& grid : grids)
@@ -127,7 +129,7 @@ std::vector<openvdb::GridBase::ConstPtr> convert(Session& session, const GlobalO
   std::vector<openvdb::GridBase::ConstPtr> grids;
   for (NamedField& field : fields) {
     grids.push_back(session.exporter.grid(field, provenance));
-    field.field.values = {};  // lets go of what was downloaded for it
+    field.field.values = {};  // frees what it downloaded
   }
   return grids;
 }
@@ -144,7 +146,7 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
     return sequence ? command::numberedName(options.output, frame) : options.output;
   };
   const std::vector<int> levels = levelsOf(options);
-  options.display.given();  // refused before the work
+  options.display.given();  // throws for a wrong --exposure before the work
   command::Outputs outputs;
   outputs.add("-o", fileOf(first), {".vdb"}).add("--preview", options.preview, {".png"});
   if (first != last) outputs.add("-o", fileOf(last), {".vdb"});

@@ -25,7 +25,8 @@ struct Options {
 };
 
 int exportGrids(const Options& options, const command::GlobalOptions& global);
-/// Of a scene and a pipeline, of a pipeline alone (without sizes; nothing is run) or of a .vdb file.
+/// --list: the grids of a pipeline on a scene, of a pipeline alone (without sizes; nothing runs) or of a .vdb
+/// file.
 int list(const Options& options, const command::GlobalOptions& global);
 int diff(const Options& options, const command::GlobalOptions& global);
 

@@ -20,7 +20,7 @@ namespace {
 using openvdb::Coord;
 using openvdb::Vec3d;
 
-// Of a voxel: below this, two lattices are one, and a border lies on another.
+// In voxels: two lattices count as equal, and two borders as one, if they differ by less.
 constexpr double kSnap = 1e-5;
 
 /// Where cubic voxels lie: the centre of voxel (0,0,0) and their size, m.
@@ -68,7 +68,7 @@ struct Numbers<openvdb::math::Vec3<T>> {
 
 // ---- onto a coarser lattice ----------------------------------------------------------------------------
 
-/// The coarse voxels that a fine one overlaps along one axis, and how much of the coarse one it fills.
+/// The coarse voxels that a fine one overlaps along one axis, and the share of each that it fills.
 struct Overlap {
   int first = 0, count = 1;
   std::array<double, 2> share{1.0, 0.0};
@@ -138,7 +138,7 @@ class Comparison {
   GridDifference run(const std::string& what) const {
     openvdb::MaskTree either(*first_, false, openvdb::TopologyCopy());
     either.topologyUnion(openvdb::MaskTree(*second_, false, openvdb::TopologyCopy()));
-    constexpr std::uint64_t kVoxelsPerByte = 4;  // of a tree of bits, with its nodes
+    constexpr std::uint64_t kVoxelsPerByte = 4;  // of a bit tree, including its nodes
     requireMemory(either.activeVoxelCount() / kVoxelsPerByte, what);
     either.voxelizeActiveTiles();
     const openvdb::tree::LeafManager<openvdb::MaskTree> leaves(either);

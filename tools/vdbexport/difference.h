@@ -1,4 +1,4 @@
-// How two OpenVDB grids differ, voxel by voxel, also across resolutions.
+// Compares two OpenVDB grids voxel by voxel, also at different resolutions.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -14,22 +14,22 @@ struct GridDifference {
   std::uint64_t differing = 0;   ///< their largest component differs by more than the tolerance
   std::uint64_t onlyFirst = 0;   ///< active in the first grid alone
   std::uint64_t onlySecond = 0;  ///< active in the second grid alone
-  double largest = 0.0;  ///< of all components' absolute differences; infinite where one is not a number
-  double rms = 0.0;      ///< over voxels and components
-  openvdb::Coord where;  ///< of the largest
+  double largest = 0.0;          ///< absolute difference of any component; infinite if one is NaN
+  double rms = 0.0;              ///< over voxels and components
+  openvdb::Coord where;          ///< of the largest
   std::string lattice = "same";  ///< or "first" or "second": whose voxels the other was averaged onto
 
-  /// Within the tolerance; with none, also active in the same places.
+  /// Within the tolerance; at tolerance 0 the grids must also have the same active voxels.
   bool same(double tolerance) const {
     return differing == 0 && (tolerance > 0.0 || (onlyFirst == 0 && onlySecond == 0));
   }
 };
 
-/// Compares grids of numbers, vectors or bools (as 0 and 1) of one type, either with the same linear
-/// transform or with cubic voxels along the axes. Where their lattices differ, the values of the finer grid,
-/// taken as constant in each voxel, are averaged over the box of each voxel of the coarser one; a coarse
-/// voxel counts as active where an active finer one overlaps it. Error, naming `what`, for anything else:
-/// other transforms, other types, too much memory.
+/// Compares two grids of the same type: numbers, vectors or bools (as 0 and 1). They have the same linear
+/// transform, or cubic voxels along the axes. If their lattices differ, the values of the finer grid, taken
+/// as constant in each voxel, are averaged over each voxel of the coarser lattice. A coarse voxel counts as
+/// active if an active finer one overlaps it. Error, naming `what`, for other transforms, other types and too
+/// much memory.
 GridDifference difference(const openvdb::GridBase& first, const openvdb::GridBase& second, double tolerance,
                           const std::string& what);
 

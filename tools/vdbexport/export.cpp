@@ -12,7 +12,7 @@
 namespace lumivox::vdb {
 namespace {
 
-/// Nothing runs that no grid needs.
+/// Options by which only the passes run that a grid needs.
 RenderOptions gridsAlone(RenderOptions options) {
   options.wantsOutputs = false;
   return options;
@@ -130,7 +130,8 @@ std::string Exporter::whyLeftOut(const Source& source) const {
   return "it was left out";
 }
 
-/// Of outputs that hold the same textures the one with more levels stays, or the later.
+/// Keeps one of the outputs that hold the same textures: the one with the most fields, or the last of
+/// several.
 void Exporter::dropCopies(std::vector<Source>& sources) const {
   const auto isCopy = [&](std::size_t i) {
     const OutBase* output = outputOf(sources[i]);

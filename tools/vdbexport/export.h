@@ -1,4 +1,4 @@
-// From a pipeline on a scene to named OpenVDB grids with their place in the world and where they come from.
+// Exports ports of a pipeline as named OpenVDB grids, with their place in the world and their provenance.
 #pragma once
 
 #include <map>
@@ -13,12 +13,12 @@ namespace lumivox::vdb {
 /// An output of a pass whose port can be exported.
 struct Source {
   std::string pass, port;                ///< names in the pipeline's text
-  std::string technique, techniquePass;  ///< who makes it
+  std::string technique, techniquePass;  ///< that produce it
   std::string portKind, meaning;
   std::string text() const { return pass + "." + port; }
 };
 
-/// All of a pipeline, in text order. Nothing is run.
+/// All exportable outputs of a pipeline, in the order of its text. No pass runs.
 std::vector<Source> exportableSources(const Pipeline& pipeline, TechniqueSource& techniques);
 
 struct ExportRequest {
@@ -27,8 +27,8 @@ struct ExportRequest {
   bool half = false;               ///< floats are stored with 16 bits
 };
 
-/// A field of a source under the name that its grid gets: PASS.PORT.FIELD, with .levelL behind it for the
-/// coarser levels; "density" when it is the only density of a medium, which is what viewers look for.
+/// A field and the name of its grid: PASS.PORT.FIELD, followed by .levelL for a coarser level. The only
+/// density of a medium is called "density", which viewers look for.
 struct NamedField {
   std::string name;
   Source source;
@@ -42,8 +42,9 @@ class Exporter {
   Exporter(gpu::Device& device, TechniqueSource& techniques, const Scene& scene, const Pipeline& pipeline,
            const RenderOptions& options, ExportRequest request);
 
-  /// The fields of one frame. What was named and cannot be had is an Error; what was not named is left out
-  /// with a message. Outputs that hold the same textures count once.
+  /// The fields of one frame. Error if a grid or level that the request names cannot be exported. A request
+  /// that names no grids leaves out, with a message, what cannot be exported, and exports one of the outputs
+  /// that hold the same textures.
   std::vector<NamedField> render(double time, int frame);
 
   /// One grid of the last frame, with its transform and metadata. Call it once for each field.

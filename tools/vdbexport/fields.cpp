@@ -29,7 +29,7 @@ glm::ivec3 unpackedVoxel(std::uint32_t packed) {
 
 constexpr int kWordBits = 32;  // of a component of a stack
 
-/// Bits of stacks along z; mip levels halve x and y alone.
+/// A grid from bits that are stacked along z; mip levels halve x and y alone.
 openvdb::GridBase::Ptr gridOfBits(const gpu::Texture& texture, int level, const glm::ivec3& resolution) {
   const gpu::TextureDescription& description = texture.description();
   const glm::ivec3 texels = levelResolution({description.width, description.height, 1}, level);
@@ -70,13 +70,13 @@ const glm::ivec3& voxelOf(const VoxelsRead::Voxel& read) {
   return read.voxel;
 }
 
-/// Items in voxels, in no order, sorted by leaf.
+/// Sorts items, which lie in voxels in any order, by leaf.
 template <class Item>
 class SortedVoxels {
  public:
   explicit SortedVoxels(const glm::ivec3& resolution) : layout_(resolution) {}
 
-  /// Item `i` of `count` is `itemOf(i)`; Error for one outside the grid.
+  /// Item `i` of `count` is `itemOf(i)`. Error if it lies outside the grid.
   template <class ItemOf>
   void sort(std::uint64_t count, const ItemOf& itemOf) {
     first_.assign(layout_.count() + 1, 0);
@@ -95,7 +95,7 @@ class SortedVoxels {
   bool sorted() const { return !first_.empty(); }
   const LeafLayout& layout() const { return layout_; }
 
-  /// `set(node, offset, item)` for every item.
+  /// Calls `set(node, offset, item)` for every item.
   template <class GridType, class Set>
   openvdb::GridBase::Ptr grid(std::string_view what, const Set& set) const {
     using Node = typename GridType::TreeType::LeafNodeType;
@@ -115,7 +115,7 @@ class SortedVoxels {
     return leaf.x + leaves.x * (leaf.y + leaves.y * leaf.z);
   }
   LeafLayout layout_;
-  std::vector<std::size_t> first_;  ///< of each leaf in items_, and the end
+  std::vector<std::size_t> first_;  ///< index in items_ of each leaf's first item, and at last their count
   std::vector<Item> items_;
 };
 
@@ -124,7 +124,7 @@ class ListedVoxels {
  public:
   ListedVoxels(VoxelList list, const glm::ivec3& resolution) : list_(std::move(list)), voxels_(resolution) {}
 
-  /// With the value true, or the number of items.
+  /// The value of a voxel is true or, in a grid of numbers, its number of items.
   template <class GridType>
   openvdb::GridBase::Ptr grid(std::string_view what) {
     if (!voxels_.sorted()) load();
@@ -167,7 +167,7 @@ openvdb::GridBase::Ptr gridOfRead(const VoxelsRead& source, const glm::ivec3& re
   });
 }
 
-/// The value 1 everywhere: of a box of one leaf that becomes one tile.
+/// A grid with the value 1 in every voxel; full leaves become tiles.
 openvdb::GridBase::Ptr filledGrid(const glm::ivec3& resolution, const std::string& what) {
   using Node = FloatGrid::TreeType::LeafNodeType;
   const LeafLayout layout(resolution);
@@ -179,8 +179,8 @@ openvdb::GridBase::Ptr filledGrid(const glm::ivec3& resolution, const std::strin
   return sparseGrid<FloatGrid>(layout, what, everywhere, fill);
 }
 
-/// Type, size on the device and values of a field, by what they come from. Fields of the same textures or
-/// lists share what is downloaded.
+/// Makes fields from textures, lists and boxes: type, size on the device and values. Fields of the same
+/// textures or lists share one download.
 class FieldMaker {
  public:
   Field make(const PortContents::Field& from) {

@@ -1,4 +1,4 @@
-// vdbexport: voxel grids of a pipeline as OpenVDB files, and what such files hold.
+// vdbexport: writes the voxel grids of a pipeline to OpenVDB files, and lists and compares such files.
 #include "common/command_line.h"
 #include "common/manual.h"
 #include "lumivox/plugin/technique.h"

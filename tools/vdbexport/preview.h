@@ -12,14 +12,15 @@
 
 namespace lumivox::vdb {
 
-/// Grids of one export, of all its frames.
+/// The grids of one export, over all its frames.
 class Preview {
  public:
   explicit Preview(gpu::Device& device) : shaders_(device) {}
-  /// While the device holds the fields. `frame`: put before the grids' names; empty: there is only one.
+  /// Call it while the device holds the fields. `frame` is put before the grids' names; empty if there is
+  /// only one frame.
   void add(const std::vector<NamedField>& fields, const std::string& frame);
-  /// Radiance is exposed like every image that is displayed, all of it alike; the largest value of every
-  /// other quantity (by the grid's name) is white. Error without any grid.
+  /// All radiance is displayed with the same exposure. Of every other grid, by name, the largest value is
+  /// white. Error without any grid.
   void write(const std::filesystem::path& file, const command::DisplayOptions& display) const;
 
  private:

@@ -1,4 +1,4 @@
-// Dense voxels to sparse OpenVDB trees, leaf by leaf and in parallel.
+// Converts dense voxels to sparse OpenVDB trees, leaf by leaf and in parallel.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -21,7 +21,7 @@ namespace lumivox::vdb {
 /// Voxels along each side of a leaf node of the standard trees.
 inline constexpr int kLeaf = 8;
 
-/// How a grid of voxels falls into leaves; leaf (0,0,0) starts at voxel (0,0,0). Leaves at the far border may
+/// Divides a grid of voxels into leaves; leaf (0,0,0) starts at voxel (0,0,0). Leaves at the far border may
 /// reach beyond the grid.
 struct LeafLayout {
   glm::ivec3 resolution{0}, leaves{0};
@@ -37,7 +37,7 @@ struct LeafLayout {
     return kLeaf * glm::ivec3(static_cast<int>(leaf % x), static_cast<int>(leaf / x % y),
                               static_cast<int>(leaf / (x * y)));
   }
-  /// One beyond its last voxel inside the grid.
+  /// The end of its voxels inside the grid, exclusive.
   glm::ivec3 high(std::size_t leaf) const { return glm::min(low(leaf) + kLeaf, resolution); }
 };
 
@@ -52,10 +52,10 @@ void forEachVoxel(const LeafLayout& layout, std::size_t leaf, Work&& work) {
         work(glm::ivec3(x, y, z), LeafType::coordToOffset(openvdb::Coord(x, y, z)));
 }
 
-/// Makes a grid of background zero. `occupied(leaf)` may be true for a leaf without active voxels, but not
-/// the other way round; `fill(leaf, node)` sets the active voxels of a node that is all inactive zero. Both
-/// are called from several threads. What is constant becomes a tile. Error when the nodes do not fit into
-/// memory.
+/// Makes a grid of background zero. `occupied(leaf)` must be true for every leaf with active voxels, and may
+/// be true for others. `fill(leaf, node)` sets the active voxels of a node whose voxels are inactive and
+/// zero. Both are called from several threads. A constant leaf becomes a tile. Error if the nodes do not fit
+/// into memory.
 template <class GridType, class Occupied, class Fill>
 typename GridType::Ptr sparseGrid(const LeafLayout& layout, std::string_view what, const Occupied& occupied,
                                   const Fill& fill) {

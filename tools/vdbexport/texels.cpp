@@ -17,7 +17,7 @@ glm::ivec3 sizeOf(const gpu::Texture& texture) {
   return {description.width, description.height, description.depth};
 }
 
-/// All bytes are zero when the first is, and each equals the one before it.
+/// Whether any byte is not zero: all are zero if the first one is and each equals the one before it.
 bool anyBit(const std::byte* bytes, std::size_t count) {
   return bytes[0] != std::byte{0} || std::memcmp(bytes, bytes + 1, count - 1) != 0;
 }
@@ -64,8 +64,9 @@ void Texels::load() {
   requireMemory(atMost, fmt::format("downloading {}", texture_->label()));
   leaves_.resize(layout_.count());
   texels_.resize(layout_.count() / static_cast<std::size_t>(layout_.leaves.x));
-  // A layer of leaves at a time, through buffers that stay in the caches: what is empty, mostly nearly all of
-  // the volume, is not written to memory. One layer is searched while the next is downloaded.
+  // Texels pass one layer of leaves at a time through buffers that stay in the caches: the empty part,
+  // usually nearly all of the volume, is never written to memory. One layer is searched while the next is
+  // downloaded.
   std::array<std::vector<std::byte>, 2> buffers;
   tbb::task_group searching;
   try {
@@ -96,7 +97,8 @@ void Texels::keepLayer(int layer, const std::vector<std::byte>& slices) {
   });
 }
 
-/// `slices` begins at the first texel of the row of leaves; `extent`: voxels of the leaves along y and z.
+/// Notes which texels of a row of leaves to keep. `slices` begins at the row's first texel. `extent`: voxels
+/// of the leaves along y and z.
 void Texels::findKept(std::size_t leafRow, const glm::ivec2& extent, const std::byte* slices) {
   const auto leavesX = static_cast<std::size_t>(layout_.leaves.x);
   const std::size_t partBytes = kLeaf * texelBytes_;

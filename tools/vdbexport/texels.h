@@ -13,8 +13,8 @@
 
 namespace lumivox::vdb {
 
-/// A volume level, downloaded when it is first needed and kept while somebody holds it: its texels that are
-/// not zero to the bit, leaf by leaf. Several grids may come from one.
+/// The texels of a volume level that have any bit set, leaf by leaf. They are downloaded when first needed,
+/// and kept with this object. Several grids may be made from one.
 class Texels {
  public:
   Texels(gpu::TextureRef texture, int level);
@@ -24,7 +24,7 @@ class Texels {
   std::uint64_t sizeBytes() const;  ///< of the level on the device
   /// Error when the memory does not suffice.
   void load();
-  /// Whether any texel of a leaf is kept. After load().
+  /// Whether any texel of a leaf is kept. Call it after load().
   bool occupied(std::size_t leaf) const {
     return std::any_of(leaves_[leaf].kept.begin(), leaves_[leaf].kept.end(),
                        [](std::uint64_t word) { return word != 0; });
@@ -45,8 +45,8 @@ class Texels {
 
  private:
   struct Leaf {
-    std::array<std::uint64_t, kLeaf> kept{};  ///< bit x + 8 y of word z
-    std::size_t firstByte = 0;                ///< in the texels of its row of leaves
+    std::array<std::uint64_t, kLeaf> kept{};  ///< texel (x, y, z) is bit x + 8 y of word z
+    std::size_t firstByte = 0;                ///< offset in the texels of its row of leaves
   };
   void keepLayer(int layer, const std::vector<std::byte>& slices);
   void findKept(std::size_t leafRow, const glm::ivec2& extent, const std::byte* slices);
@@ -59,7 +59,7 @@ class Texels {
   LeafLayout layout_;
   std::size_t texelBytes_;
   std::vector<Leaf> leaves_;
-  std::vector<std::unique_ptr<std::byte[]>> texels_;  ///< kept, of each row of leaves along x
+  std::vector<std::unique_ptr<std::byte[]>> texels_;  ///< kept texels of each row of leaves along x
 };
 using TexelsRef = std::shared_ptr<Texels>;
 
@@ -74,14 +74,14 @@ T readAs(const std::byte* bytes) {
 
 /// A texel as floats; components that the format does not have are 0.
 using Decode = glm::vec4 (*)(const std::byte* texel);
-/// Error, naming `what`, for a format of whole numbers or of depth.
+/// Error, naming `what`, for integer and depth formats.
 Decode decoderOf(gpu::Format format, std::string_view what);
 
 }  // namespace detail
 
-/// A grid whose active voxels are those where any component of any of the textures (of one format and size)
-/// differs from zero; `select` makes the value from their texels. So all grids that come from the same
-/// textures have the same active voxels.
+/// A grid from textures of one format and size. A voxel is active if any component of any texture differs
+/// from zero, so that all grids from the same textures have the same active voxels. `select` computes the
+/// value from the voxel's texels.
 template <class GridType, std::size_t kCount, class Select>
 typename GridType::Ptr gridOf(const std::array<TexelsRef, kCount>& sources, std::string_view what,
                               const Select& select) {

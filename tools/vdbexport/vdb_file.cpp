@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A stream into memory that OpenVDB can go back in, to fill in where each grid lies.
+/// A stream into memory that allows OpenVDB to seek back and write the offset of each grid.
 class OutputBuffer : public std::streambuf {
  public:
   std::string take() { return std::move(bytes_); }
@@ -55,8 +55,8 @@ class OutputBuffer : public std::streambuf {
   std::size_t position_ = 0;
 };
 
-/// Opens the part of OpenVDB's archive that io::File keeps to itself, because io::File does not notice a full
-/// disk.
+/// Writes to a stream by Archive::write(), which is protected. io::File is not used, since it does not notice
+/// a full disk.
 class MemoryArchive : public openvdb::io::Archive {
  public:
   MemoryArchive() {
@@ -95,7 +95,7 @@ std::string encode(const openvdb::GridCPtrVec& grids) {
   openvdb::initialize();
   std::uint64_t sizeBytes = 0;
   for (const openvdb::GridBase::ConstPtr& grid : grids) sizeBytes += grid->memUsage();
-  requireMemory(sizeBytes, "the OpenVDB file");  // at most: what is stored is compressed
+  requireMemory(sizeBytes, "the OpenVDB file");  // an upper bound, since the file is compressed
   return MemoryArchive().bytesOf(grids);
 }
 

@@ -1,4 +1,4 @@
-// OpenVDB files as bytes: written whole or not at all, read with an error that says what is wrong.
+// Writes OpenVDB files completely or not at all, and reads them with an error that states the defect.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -13,10 +13,11 @@ namespace lumivox::vdb {
 /// bytes: the file's unique tag, which OpenVDB takes from the clock, is made from the content.
 std::string encode(const openvdb::GridCPtrVec& grids);
 
-/// Writes beside the target and renames. Error naming the path.
+/// Writes a file beside the target, then renames it. Errors name the path.
 void writeVdb(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids);
 
-/// All grids of a file in its order. Error naming the path when it is absent, no OpenVDB file or not whole.
+/// All grids of a file, in its order. Error, naming the path, if the file is absent, is not an OpenVDB file
+/// or is incomplete.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::filesystem::path& file);
 
 }  // namespace lumivox::vdb

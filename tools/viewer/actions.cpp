@@ -23,10 +23,10 @@ constexpr double kLongest = kLongestTime;          // s, either way
 constexpr double kLargestAngle = 360.0 * kDegree;  // of one turn
 constexpr double kLargestSide = 16384;             // pixels, of images and windows: what OpenGL 4.5 promises
 constexpr double kLeastFactor = 1e-3, kMostFactor = 1e3;
-constexpr double kBrightest = 1e30;       // W, per whatever the word is of
+constexpr double kBrightest = 1e30;       // W in the unit of the statement
 constexpr double kDensest = 1e9;          // 1/m
 constexpr double kSharpest = 1e30;        // exponents of Phong lobes
-constexpr double kMostSamples = 1 << 20;  // of a pixel of the reference
+constexpr double kMostSamples = 1 << 20;  // per pixel of the reference
 
 PropertySpecification one(std::string word, PropertyType type, std::string meaning) {
   PropertySpecification made;
@@ -54,8 +54,8 @@ PropertySpecification between(double low, double high, PropertySpecification mad
   made.high = std::min(made.high, high);
   return made;
 }
-/// Within what the scene's text takes for a word of a block, or of a kind of it: what is edited in the window
-/// must be what the text can say.
+/// Narrows the range to that of the same word in the scene text, in a block or any of its kinds, so that
+/// every edit can be saved as text.
 PropertySpecification asInScene(const std::string& block, const std::string& word,
                                 PropertySpecification made) {
   const auto narrow = [&](const std::vector<PropertySpecification>& properties) {
@@ -69,7 +69,7 @@ PropertySpecification asInScene(const std::string& block, const std::string& wor
   }
   return made;
 }
-/// A place, or a way, in metres.
+/// A position or a displacement in metres.
 PropertySpecification place(std::string word, std::string meaning) {
   return between(-kFarthest, kFarthest,
                  measured(std::move(word), PropertyType::vector3, dsl::kLength, std::move(meaning)));
@@ -245,7 +245,7 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
   return {std::move(view)};
 }
 
-/// Texts of pipelines bind parameters; nobody binds those of a script.
+/// Reports parameters, which pipeline texts may use but scripts have not.
 void checkUnbound(const dsl::Document& document, const std::vector<dsl::Value>& values,
                   std::vector<Diagnostic>& findings) {
   for (const dsl::Value& value : values) {
@@ -264,14 +264,14 @@ void checkUnbound(const dsl::Document& document, const dsl::Block& block, std::v
   }
 }
 
-/// One value of a statement as if it were all of it.
+/// The statement with this value alone.
 dsl::Property only(const dsl::Property& property, std::size_t value) {
   dsl::Property one = property;
   one.values = {property.values[value]};
   return one;
 }
 
-/// Statements that take a word or a number, which no table says.
+/// Checks the statements that take either a word or a number, which the table of properties cannot express.
 void checkMixed(const dsl::Document& document, const dsl::Property& property,
                 std::vector<Diagnostic>& findings) {
   const std::size_t count = property.values.size();
@@ -308,7 +308,7 @@ void checkMixed(const dsl::Document& document, const dsl::Property& property,
   }
 }
 
-/// A name that is empty would stand for the first of a kind, or for a file somewhere else.
+/// Reports empty names: one would mean the first of its kind, or a wrong file.
 void checkNamed(const dsl::Document& document, const dsl::Property& property,
                 std::vector<Diagnostic>& findings) {
   const auto& known = viewSpecifications().front().properties;
@@ -321,7 +321,8 @@ void checkNamed(const dsl::Document& document, const dsl::Property& property,
                                           dsl::expectation(*found)));
 }
 
-/// Texts that describe something have a block of a name once; what is done in a script may be done again.
+/// Removes the findings of repeated blocks: other texts may have a block of one name once, but a script may
+/// repeat an action.
 void allowRepeated(const dsl::Document& document, std::vector<Diagnostic>& findings) {
   for (const dsl::Item& item : document.items) {
     if (!item.block) continue;
@@ -331,7 +332,7 @@ void allowRepeated(const dsl::Document& document, std::vector<Diagnostic>& findi
       const auto& header = statement.block->header;
       const std::string name = header.empty() ? std::string() : header.front().text;
       if (done.insert(statement.block->word + ' ' + name).second) continue;
-      // Nothing else is found at the word of a block that is known and has its name, as the first of it had.
+      // The word of a known block has no other finding: the first block of that name had none either.
       const SourcePlace& place = statement.block->place;
       const auto& known = viewSpecifications().front().blocks;
       if (std::ranges::find(known, statement.block->word, &dsl::BlockSpecification::word) != known.end())

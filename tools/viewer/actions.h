@@ -1,5 +1,5 @@
-// What can be done in the viewer, as statements of the language of the other texts: controls write them,
-// scripts consist of them, and the history is a list of them.
+// The viewer's actions as statements of the text language. Controls write them, scripts consist of them, and
+// the history is a list of them.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,15 @@
 
 namespace lumivox::viewer {
 
-/// m, from the origin along each axis: nobody goes or looks farther.
+/// m, largest coordinate of a camera's eye and target.
 inline constexpr double kFarthest = kFarthestPlace;
-/// m, between a camera and its target: nearer, the direction between them is lost to rounding.
+/// m, least distance from a camera to its target: below it, rounding loses the direction between them.
 inline constexpr double kNearest = 1e-9;
 
-/// The grammar: one block, `view NAME { ... }`, whose statements are done in their order.
+/// The grammar: one block, `view NAME { ... }`, whose statements are performed in order.
 const std::vector<dsl::BlockSpecification>& viewSpecifications();
 
-/// One statement. `property` or `block` is set, within the document.
+/// One statement. Either `property` or `block` is set, and points into the document.
 struct Action {
   std::shared_ptr<const dsl::Document> document;
   const dsl::Property* property = nullptr;
@@ -29,22 +29,23 @@ struct Action {
 
   const std::string& word() const { return property != nullptr ? property->word : block->word; }
   const SourcePlace& place() const { return property != nullptr ? property->place : block->place; }
-  // Of properties that were checked:
+  // For properties that were checked:
   double number(std::size_t value = 0) const;  ///< in base units
   std::string text(std::size_t value = 0) const;
   std::vector<double> numbers() const;
   bool flag() const;
-  std::string written() const;  ///< as a script has it
+  std::string written() const;  ///< as in a script
 };
 
-/// The statements of a script. DiagnosticsError with all findings.
+/// The statements of a script. Throws DiagnosticsError with all findings.
 std::vector<Action> readScript(const std::filesystem::path& file);
-/// Statements without a block around them.
+/// The same for statements without a block around them.
 std::vector<Action> parseActions(const std::string& statements);
 
-/// A text as a value of a statement: in quotation marks.
+/// A text as a value of a statement, in quotation marks.
 std::string quoted(const std::string& text);
-/// One of the choices of a control: words and numbers as they are, in quotation marks what is neither.
+/// A control's choice as a value of a statement: words and numbers unchanged, any other text in quotation
+/// marks.
 std::string choiceValue(const std::string& choice);
 
 }  // namespace lumivox::viewer

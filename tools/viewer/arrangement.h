@@ -1,4 +1,4 @@
-// Where things stand in the window, as far as that needs no window.
+// The part of the window's layout that can be computed without a window.
 #pragma once
 
 #include <optional>
@@ -6,9 +6,8 @@
 
 namespace lumivox::viewer {
 
-/// Round numbers from `low` to `high` for a logarithmic axis: powers of ten where there are three of them,
-/// otherwise as many more as it takes. Of positive bounds a factor of 2.25 or more apart there are two at
-/// least.
+/// Round numbers from `low` to `high` for a logarithmic axis: powers of ten, or finer steps where fewer than
+/// three powers fit. Positive bounds a factor of 2.25 or more apart give at least two numbers.
 std::vector<double> roundNumbers(double low, double high);
 
 /// All lengths in the window's pixels.
@@ -17,8 +16,8 @@ struct Room {
   float panels = 0.0f;          ///< their width beside the pictures
   float aroundPictures = 0.0f;  ///< above and below them, with their legends
 };
-/// Pictures side by side are wide: where panels beside them would make them smaller, the panels go below.
-/// The height that is left to the pictures then. `aspect`: of all pictures together, width over height.
+/// The height of the pictures if the panels go below them; nothing if they go beside. They go below where the
+/// pictures are larger that way, as wide pictures are. `aspect`: width over height of all pictures together.
 std::optional<float> heightAbovePanels(const Room& room, float aspect);
 
 }  // namespace lumivox::viewer

@@ -11,12 +11,12 @@ volatile std::sig_atomic_t noted = 0;
 
 void note(int signal);
 
-/// Calls only what a signal handler may call.
+/// Async-signal-safe: note() calls it.
 void replace(void (*from)(int), void (*to)(int)) {
   for (const int signal : kSignals) {
     struct sigaction current {};
     sigaction(signal, nullptr, &current);
-    // Who was started to ignore it (nohup) goes on ignoring it.
+    // A signal that the process was started to ignore (nohup) stays ignored.
     if (current.sa_handler == from) std::signal(signal, to);
   }
 }

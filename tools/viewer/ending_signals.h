@@ -1,10 +1,10 @@
-// SIGINT, SIGTERM and SIGHUP, which would leave behind what the program has among temporary files.
+// Handles SIGINT, SIGTERM and SIGHUP, so that the program removes its temporary files before it ends.
 #pragma once
 
 namespace lumivox::viewer {
 
-/// While it lives, the first of these signals is only noted, so that the program can put away what it has and
-/// end; one more ends it where it is. One of these at a time.
+/// While it lives, the first of these signals is only noted, so that the program can clean up and end. The
+/// next one ends the process at once. Only one may exist at a time.
 class EndingSignals {
  public:
   EndingSignals();
@@ -13,7 +13,7 @@ class EndingSignals {
   EndingSignals& operator=(const EndingSignals&) = delete;
 
   static bool came();
-  /// Ends the process by the signal that came, as if nobody had waited; returns where none came.
+  /// Ends the process by the signal that came, as without a handler. Returns if none came.
   static void endByIt();
 };
 

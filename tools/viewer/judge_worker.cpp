@@ -14,7 +14,7 @@ ImageBuffer outputOf(const FrameResult& frame, const std::string& output) {
 }
 
 std::string layerOf(const RenderedSide& side, const std::string& output) {
-  // As reports judge: the whole image by all light, an output by what its technique models.
+  // As in reports: the whole image against all light, an output against the light that its technique models.
   if (output == kWholeImage) return "full";
   const auto component = side.frame.components.find(output);
   if (component == side.frame.components.end()) return {};
@@ -40,7 +40,7 @@ std::vector<int> bounceLayersOf(const Rendered& rendered) {
 
 namespace {
 
-/// What is known of the error of one side; nothing when another wish waits.
+/// The errors of one side; nothing if another wish waits.
 std::optional<std::vector<JudgedOutput>> judged(const RenderedSide& side, const JudgeWish& wish,
                                                 const JudgeWorker::Turn& turn) {
   std::vector<JudgedOutput> outputs;
@@ -77,7 +77,7 @@ JudgeWorker::Work makeJudgeWork() {
         result->sides[i] = std::move(*outputs);
       }
     } catch (const std::exception& error) {
-      result->error = error.what();  // of light so bright that squares of it are no numbers
+      result->error = error.what();  // such as radiance whose square overflows
     }
     turn.give(std::move(result));
   };

@@ -1,4 +1,4 @@
-// Errors of what is shown against the reference so far.
+// Errors of the shown frame against the reference as far as it has converged.
 #pragma once
 
 #include <map>
@@ -14,16 +14,16 @@
 
 namespace lumivox::viewer {
 
-/// Name of the sum of all radiance among the outputs.
+/// The name of the sum of all radiance in the list of outputs.
 inline constexpr const char* kWholeImage = "whole image";
 
 using RenderedResult = std::shared_ptr<const Rendered>;
 
 /// The error of one output of one side.
 struct JudgedOutput {
-  std::string output, layer;  ///< layer: of the reference that it is judged by
+  std::string output, layer;  ///< layer: that of the reference
   ImageError error;
-  double ofNothing = 0.0;  ///< the FLIP of leaving it out: black, or 1 for ambient occlusion
+  double ofNothing = 0.0;  ///< FLIP without this output: black, or 1 for ambient occlusion
 };
 struct JudgeWish {
   RenderedResult rendered;
@@ -33,19 +33,19 @@ struct JudgeWish {
 struct Judged {
   JudgeWish wish;
   std::vector<std::vector<JudgedOutput>> sides;
-  std::string error;  ///< why something could not be judged; empty: all of it was
+  std::string error;  ///< why an output could not be judged; empty: all were
 };
 using JudgeWorker = LatestWorker<JudgeWish, std::shared_ptr<const Judged>>;
 
 JudgeWorker::Work makeJudgeWork();
 
-/// The image of an output, or of kWholeImage; empty when there is none.
+/// The image of an output, or of kWholeImage; empty if there is none.
 ImageBuffer outputOf(const FrameResult& frame, const std::string& output);
-/// The layer that it is judged by, that of as many bounces as the technique models; empty: none.
+/// The reference layer for an output, with as many bounces as the technique models; empty: none.
 std::string layerOf(const RenderedSide& side, const std::string& output);
-/// Outputs that are shown: kWholeImage first where there is one, then all.
+/// The outputs that can be shown: kWholeImage first if there is one, then all others.
 std::vector<std::string> shownOutputs(const FrameResult& frame);
-/// The bounces that a reference of these sides needs layers for, sorted.
+/// The numbers of bounces for which a reference of these sides needs layers, sorted.
 std::vector<int> bounceLayersOf(const Rendered& rendered);
 
 }  // namespace lumivox::viewer

@@ -1,4 +1,4 @@
-// What is taken out of the viewer: images, texts, the record of the panels.
+// Saves images, texts and the record of the panels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void saveImage(const fs::path& file, const RenderedSide& side, const std::string
                       : curve == Curve::filmic ? Tone::filmic
                                                : Tone::srgb;
     const Display chosen{exposure, tone};
-    // As the picture is: what is no radiance is exposed only where somebody says by how much.
+    // As in the window: values that are not radiance are exposed only by a chosen exposure.
     writePng(file, image, given ? chosen : displayOf(image, chosen));
   } else {
     LayeredImage layered;
@@ -39,8 +39,8 @@ void saveImage(const fs::path& file, const RenderedSide& side, const std::string
   }
 }
 
-/// What a statement writes is checked as the outputs of commands are, so that no record takes the place of a
-/// scene.
+/// Checks the file of a statement like an output of a command, so that for example a record never overwrites
+/// a scene.
 void requireOutput(const std::string& word, const fs::path& file) {
   using command::Outputs;
   static const std::map<std::string, std::vector<std::string>> endings{{"save_image", {".png", ".exr"}},
@@ -52,11 +52,12 @@ void requireOutput(const std::string& word, const fs::path& file) {
   const Outputs outputs = Outputs().add(
       word, file, endings.at(word), isStrict ? Outputs::Endings::only : Outputs::Endings::otherKindsRefused);
   outputs.check({});
-  // A text that is there is asked for before it is written.
+  // An existing text is overwritten only after a question.
   if (word != "save_pipeline" && word != "save_scene") outputs.requireUnread();
 }
 
-/// The folder of the original text, if a copy of it would not find what it names.
+/// Throws unless the file is in the folder of the original text: elsewhere the files that the text names
+/// would not be found.
 void requireSameFolder(const char* what, const fs::path& file, const fs::path& original) {
   const fs::path here = fs::absolute(file).parent_path().lexically_normal(),
                  there = fs::absolute(original).parent_path().lexically_normal();
@@ -86,7 +87,7 @@ bool Session::doKeep(const Action& action) {
   const Side& side = state_.sides.front();
   const bool isScene = word == "save_scene";
   if (isScene) requireSameFolder("save_scene", file, options_.scene);
-  // A text may take its own place, whatever it is called: it is asked for.
+  // A text may overwrite itself, whatever its ending, after a question.
   const fs::path own = isScene ? options_.scene : word == "save_pipeline" ? side.pipeline->file : fs::path();
   std::error_code none;
   if (!fs::equivalent(file, own, none)) requireOutput(word, file);
@@ -100,7 +101,7 @@ bool Session::doKeep(const Action& action) {
     saveImage(file, rendered_->sides.front(), state_.output, state_.exposure, exposure_, state_.curve);
   } else {
     const TextToWrite text{file, isScene ? sceneText() : textWithDefaults(*side.pipeline, side.values)};
-    if (!isScene) Pipeline::parse(text.text, file);  // what is written can be read
+    if (!isScene) Pipeline::parse(text.text, file);  // throws if the text could not be read again
     if (!fs::exists(file)) {
       write(text);
     } else if (readFile(file) == text.text) {
@@ -136,7 +137,7 @@ void Session::write(const TextToWrite& text) {
   say(text.file.string() + " written", false);
   std::error_code none;
   if (!fs::equivalent(text.file, options_.scene, none)) return;
-  // What was changed is now what the text says: there is nothing more to be undone in the scene.
+  // The text now contains the edits, so the scene has nothing left to undo.
   ViewState settled = state_;
   settled.edits = {};
   if (settled.free) settled.camera = settled.free->name;

@@ -1,5 +1,5 @@
-// What is kept by other programs: the grid that is shown, by the exporter, so that the window needs no
-// OpenVDB; a point of the results, measured as sweeps measure; and the command that repeats the picture.
+// Work for other programs. The exporter writes the shown grid, so that the window needs no OpenVDB; `lumivox`
+// measures a point for a results store as a sweep does. Also the command that repeats the picture.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A word of a command line as a shell takes it.
+/// A word of a command line, quoted for a shell if necessary.
 std::string shellWord(const std::string& word) {
   static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   return command::inSingleQuotes(word);
 }
 
-/// A name beside a text, which finds what the text finds.
+/// A file name in the folder of a text, so that relative paths in a copy stay valid.
 fs::path nameBeside(const fs::path& text) {
   return text.parent_path() /
          fmt::format(".{}-view-{}{}", text.stem().string(), getpid(), text.extension().string());
@@ -34,7 +34,7 @@ void add(std::vector<std::string>& words, const std::vector<std::string>& more) 
   words.insert(words.end(), more.begin(), more.end());
 }
 
-/// Of the command lines of all programs, where they are not what they are by themselves.
+/// The global options that differ from their defaults.
 std::vector<std::string> globalWords(const SessionOptions& options) {
   std::vector<std::string> words;
   if (options.device.device != gpu::DeviceOptions{}.device) words = {"--device", options.device.device};
@@ -56,7 +56,7 @@ bool Session::isAsInTexts() const {
   if (!state_.edits.empty()) return false;
   try {
     return Pipeline::load(side.pipeline->file).hash == side.pipeline->hash;
-  } catch (const std::exception&) {  // a text that is gone or being written says nothing
+  } catch (const std::exception&) {  // the text is absent or half written
     return false;
   }
 }
@@ -119,7 +119,7 @@ void Session::exportGrid(const fs::path& file) {
 }
 
 void Session::addPoint(const fs::path& store) {
-  // A row of a store names its texts: they must say what was measured.
+  // A run in a store names its texts, which must contain everything that is measured.
   if (!isAsInTexts())
     throw Error(
         "add_point: the texts do not say what is shown; expected `save_scene` or `save_pipeline` before");

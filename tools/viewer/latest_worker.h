@@ -1,4 +1,4 @@
-// A thread that works on the latest wish alone: wishes that came in between are passed over.
+// A thread that works on the latest wish only, and skips older ones that it has not begun.
 #pragma once
 
 #include <atomic>
@@ -12,20 +12,21 @@
 
 namespace lumivox::viewer {
 
-/// `Wish` says what is wanted, `Result` is what comes of it. The work runs on a thread of its own, which
-/// sleeps while nothing is wanted, and may give several results for one wish.
+/// `Wish` describes the work, `Result` its result. The work runs on its own thread, which sleeps while there
+/// is no wish, and may give several results for one wish.
 template <class Wish, class Result>
 class LatestWorker {
  public:
   class Turn;
-  /// Does the work of one wish: gives results, and returns early when outdated() holds. It must not throw.
+  /// Does the work of one wish: gives results, and returns early once Turn::outdated() is true. It must not
+  /// throw.
   using Work = std::function<void(const Wish& wish, Turn& turn)>;
 
-  /// What the work sees of its worker.
+  /// The worker's interface to the work.
   class Turn {
    public:
     void give(Result result) { worker_.deliver(std::move(result)); }
-    /// Whether another wish waits, or nobody wants anything any more.
+    /// True once another wish waits or the wish was withdrawn.
     const std::atomic<bool>& outdated() const { return worker_.outdated_; }
 
    private:
@@ -34,8 +35,8 @@ class LatestWorker {
     LatestWorker& worker_;
   };
 
-  /// `makeWork` is called on the new thread, so that what the work holds (a device) lives and dies there.
-  /// `wake` is called from that thread after each result.
+  /// `makeWork` is called on the new thread, so that objects of the work (a device) are created and destroyed
+  /// there. `wake` is called from that thread after each result.
   LatestWorker(std::function<Work()> makeWork, std::function<void()> wake)
       : wake_(std::move(wake)), thread_([this, makeWork = std::move(makeWork)] { run(makeWork()); }) {}
   ~LatestWorker() {
@@ -58,18 +59,18 @@ class LatestWorker {
     }
     changed_.notify_all();
   }
-  /// Gives up what is under way and what waits.
+  /// Withdraws the current wish and the waiting one.
   void stop() {
     const std::lock_guard lock(mutex_);
     wish_.reset();
     outdated_ = true;
   }
-  /// The latest result that was not taken yet.
+  /// The latest result, if it was not taken yet.
   std::optional<Result> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(result_, std::nullopt);
   }
-  /// Whether something is wanted that was not done yet.
+  /// Whether a wish is not finished yet.
   bool busy() const {
     const std::lock_guard lock(mutex_);
     return works_ || wish_.has_value();
@@ -107,7 +108,7 @@ class LatestWorker {
   std::optional<Result> result_;
   bool works_ = false, ends_ = false;
   std::atomic<bool> outdated_{false};
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last member: the thread uses all others
 };
 
 }  // namespace lumivox::viewer

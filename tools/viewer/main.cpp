@@ -1,5 +1,5 @@
-// lumivox-view: a window in which techniques are looked at, judged and changed while they run. `lumivox view`
-// starts it.
+// lumivox-view: a window to look at techniques, judge and change them while they run. `lumivox view` starts
+// it.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -19,8 +19,8 @@ using namespace lumivox;
 using namespace lumivox::command;
 using namespace lumivox::viewer;
 
-/// Where the layout of the window is kept for this user: $XDG_STATE_HOME/lumivox/layout.view, else in
-/// ~/.local/state; nowhere without a home.
+/// The file of this user's window layout: $XDG_STATE_HOME/lumivox/layout.view, else in ~/.local/state. Empty
+/// without a home folder.
 std::filesystem::path layoutFile() {
   const auto folderOf = [](const char* variable) {
     const char* value = std::getenv(variable);
@@ -43,17 +43,17 @@ int view(const ViewOptions& options, const GlobalOptions& global) {
   window.layoutFile = options.layout;
   if (options.layout.empty() && options.script.empty()) window.layoutFile = layoutFile();
   window.title = fmt::format("{} - Lumivox", options.scene.filename().string());
-  // The session first: texts that are wrong open no window. Its threads begin when the window asks for a
-  // picture.
+  // The session comes first, so that no window opens for wrong texts. Its threads start when the window asks
+  // for a picture.
   auto looked = std::make_unique<Session>(session, [] { Window::wake(); });
-  // What ends the program from outside closes the window, so that nothing stays among temporary files.
+  // Signals that end the program close the window, so that temporary files are removed.
   const EndingSignals signals;
   window.ends = EndingSignals::came;
   {
     Window shown(window);
     shown.run(*looked, std::move(script));
   }
-  // A frame, an error or a compilation may take long: nobody waits for it any more.
+  // A frame, an error or a compilation may take long; the program does not wait for its end.
   constexpr double kLongestEnd = 0.5;  // s
   const bool stopped = looked->stop(kLongestEnd);
   if (stopped) looked.reset();

@@ -1,5 +1,5 @@
-// What the window's program takes on its command line. `lumivox view` reads the same list, so that its help,
-// its completions and what it says of a wrong word are those of the window.
+// The command line of the window's program. `lumivox view` parses the same options, so that both have the
+// same help, completions and messages.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace lumivox::viewer {
 
-/// In one sentence, for help.
+/// The program's sentence in the help.
 inline constexpr const char* kViewMeaning =
     "shows a scene in a window: techniques are looked at, judged and changed while they run";
 
@@ -19,11 +19,11 @@ struct ViewOptions {
   std::filesystem::path scene, script, layout;
   std::vector<std::filesystem::path> pipelines;
   command::RunOptions run;
-  std::string windowSize;  ///< "WxH"; empty: that of last time
+  std::string windowSize;  ///< "WxH"; empty: the size of the last run
   double fpsLimit = 60.0;
 
   void addTo(CLI::App& app);
-  /// Error when a value says nothing that can be done.
+  /// The session's options. Error for an invalid value.
   SessionOptions session(const command::GlobalOptions& global) const;
 };
 

@@ -1,4 +1,4 @@
-// How the sources of the panels write rows.
+// Helpers of the panels' sources that make rows.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ Row choice(const std::string& name, const std::string& label, const std::string&
            std::vector<std::string> choices, const std::string& statement, const std::string& tooltip = {});
 Row number(const std::string& name, const std::string& label, double value, double low, double high,
            bool integer, const std::string& statement, const std::string& tooltip = {});
-/// Three numbers in one control; between the limits each.
+/// Three numbers in one control, each between the limits.
 Row triple(const std::string& name, const std::string& label, const std::array<double, 3>& values, double low,
            double high, const std::string& statement, const std::string& tooltip = {});
 
-// The panels that stand in files of their own.
+// Panels in files of their own.
 Panel changePanel(const Session& session);
 Panel scenePanel(const Session& session);
 Panel timePanel(const Session& session);

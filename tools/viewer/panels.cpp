@@ -16,14 +16,14 @@ namespace {
 
 using Kind = Row::Kind;
 
-/// `none`: what is said where there is no such number.
+/// `none`: the text for a number that is not finite.
 std::string measuredText(const Measured& value, const std::string& none) {
   if (!std::isfinite(value.value)) return none;
   if (!std::isfinite(value.uncertainty)) return fmt::format("{:.4g}", value.value);
   return fmt::format("{:.4g} ± {:.2g}", value.value, value.uncertainty);
 }
 
-/// The errors of one output; FLIP leads, as on the page of a report.
+/// The errors of one output; FLIP comes first, as on the page of a report.
 void addJudged(std::vector<Row>& rows, const JudgedOutput& one, const std::string& prefix) {
   const std::string name = prefix + one.output, noPixel = "none: no pixel is a number in both images";
   const ImageError& error = one.error;
@@ -48,7 +48,7 @@ std::vector<std::string> stemsOf(const Session& session) {
   return names;
 }
 
-/// What is shown of a port, and what could be.
+/// Rows for the shown port: its texture, field and level, with the choices for each.
 void addPort(std::vector<Row>& rows, const Session& session, const std::vector<std::string>& textures,
              const std::vector<std::string>& fields) {
   const PortChoice& port = *session.state().port;
@@ -189,7 +189,7 @@ Panel needPanel(const Session& session) {
   panel.rows.push_back(text("memory", "memory of passes",
                             fmt::format("{}, {} saved by sharing", formatBytes(explanation.poolBytes),
                                         formatBytes(explanation.sharedBytes))));
-  // Passes and resources first: of variants and libraries there are many.
+  // Passes and resources come first, since variants and libraries are many.
   std::vector<command::Reason> reasons = command::reasonsOf(explanation);
   const auto order = [](const command::Reason& reason) {
     return reason.level == LeftOut::Level::plugin ? 2 : reason.level == LeftOut::Level::variant ? 1 : 0;

@@ -1,4 +1,4 @@
-// What the panels show, as a record: a window draws it, and a test reads it.
+// The contents of the panels as data: the window draws them, and tests read them.
 #pragma once
 
 #include <array>
@@ -10,24 +10,24 @@
 
 namespace lumivox::viewer {
 
-/// One line of a panel. Controls carry the statement that using them performs, with "{}" for the value.
+/// One line of a panel. A control has the statement that it performs, with "{}" for its value.
 struct Row {
   enum class Kind { heading, text, number, triple, choice, toggle, button, bars, stacks, points };
   Kind kind = Kind::text;
-  std::string name;  ///< unique in its panel; what scripts click
+  std::string name;  ///< unique in its panel; scripts click it by this name
   std::string label, value, tooltip;
-  std::string statement;  ///< empty: nothing to be done
+  std::string statement;  ///< empty: no control
   double number = 0.0, low = 0.0, high = 0.0;
-  std::array<double, 3> numbers{};  ///< of a triple, whose statement takes all three
+  std::array<double, 3> numbers{};  ///< of a triple; its statement takes all three
   bool integer = false, logarithmic = false, on = false, changed = false;
   std::vector<std::string> choices;
-  /// Small buttons behind it, by a word each: back to the default, to what was published.
+  /// A small button behind a control with a word, such as "default" or "published".
   struct Reset {
     std::string word, statement;
   };
   std::vector<Reset> resets;
-  /// Of bars: label and length; of stacks: label, column and height, from the bottom up; of points: label, x
-  /// and y, and the statement that goes back to it.
+  /// A bar: label and length. A part of a stack, from the bottom up: label, column and height. A point:
+  /// label, x, y, and the statement that restores it.
   struct Mark {
     std::string label;
     double x = 0.0, y = 0.0;
@@ -46,9 +46,9 @@ std::vector<Panel> panelsOf(const Session& session);
 /// The panels and the state, as JSON.
 nlohmann::ordered_json recordOf(const Session& session);
 
-/// What a control's statement becomes with a value.
+/// A control's statement with the value in place of "{}".
 std::string filledIn(const std::string& statement, const std::string& value);
-/// Three numbers as a statement has them.
+/// Three numbers as values of a statement.
 std::string written(const std::array<double, 3>& numbers);
 
 }  // namespace lumivox::viewer

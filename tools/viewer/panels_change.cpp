@@ -1,4 +1,4 @@
-// What can be changed: parameters of the pipeline and of its passes, and the ways back.
+// The panel of changes: parameters of the pipeline and of its passes, and their resets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ bool isSwitch(const std::string& value) {
   return std::find(kSwitch.begin(), kSwitch.end(), value) != kSwitch.end();
 }
 
-/// The word by which a paper's own form is chosen: of a switch `as_published`, or of words among which one is
-/// called so. Empty: none is known.
+/// The value that selects the published form: "on" for a switch `as_published`, or the choice of that name.
+/// Empty if there is none.
 std::string publishedWord(const std::string& name, const std::vector<std::string>& choices) {
   if (name == "as_published") return "on";
   for (const char* word : {"as_published", "published"})
@@ -34,7 +34,7 @@ void addResets(Row& row, const std::string& value, const std::string& byDefault,
   if (value != published) row.resets.push_back({"published", filledIn(row.statement, published)});
 }
 
-/// The parameters of passes that a parameter of the pipeline gives its value.
+/// The pass parameters that take their value from this parameter of the pipeline.
 std::vector<const PassParameter*> boundTo(const Side& side, const std::vector<PassContract>& contracts,
                                           const std::string& name) {
   std::vector<const PassParameter*> bound;

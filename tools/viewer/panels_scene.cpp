@@ -1,4 +1,4 @@
-// What the scene consists of, and what is changed in it.
+// The panel of the scene: its parts and their edits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,19 +10,19 @@
 namespace lumivox::viewer {
 namespace {
 
-constexpr double kBrightest = 1e6;                   // of controls; statements take more
+constexpr double kBrightest = 1e6;                   // of controls; statements accept more
 constexpr double kFarthest = 1e6;                    // m
-constexpr double kSharpestExponent = 1e5;            // Phong lobes as narrow as any in use
+constexpr double kSharpestExponent = 1e5;            // of the narrowest Phong lobes in use
 constexpr double kDensest = 1e3;                     // 1/m
-constexpr double kMostAnisotropy = 0.999;            // as texts take it
-constexpr double kNarrowest = 0.1, kWidest = 179.0;  // deg, as texts take them
+constexpr double kMostAnisotropy = 0.999;            // the limit of texts
+constexpr double kNarrowest = 0.1, kWidest = 179.0;  // deg, the limits of texts
 
 template <class Vector>
 std::array<double, 3> threeOf(const Vector& value) {
   return {value.x, value.y, value.z};
 }
 
-/// What was edited of a part: nothing, where it was not.
+/// The edit of a part; an empty edit if it has none.
 template <class Edit>
 const Edit& editOf(const std::map<std::string, Edit>& edits, const std::string& name) {
   static const Edit none;
@@ -30,7 +30,7 @@ const Edit& editOf(const std::map<std::string, Edit>& edits, const std::string& 
   return found == edits.end() ? none : found->second;
 }
 
-/// A row of a part that can be edited: marked, and taken back to the text, when it was.
+/// The row of an editable part; after an edit it is marked and has a reset to the text.
 Row ofPart(Row row, const std::string& part, bool changed) {
   row.changed = changed;
   if (changed) row.resets.push_back({"reset", "reset " + quoted(part)});

@@ -1,4 +1,4 @@
-// The panel of times: of the frames of the last seconds, of each pass, and what bounds them.
+// The panel of times: of the frames of the last seconds and of each pass, with the bounds of the passes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,8 @@ void addPass(std::vector<Row>& rows, const RenderedSide& side, const PassTimes& 
                         "what the port holds"));
 }
 
-/// Bars of the passes, a row for each, and what a frame costs once, while something moves, and always.
+/// Bars of the passes, one row each, and the cost of a frame: once, while something moves, and in every
+/// frame.
 void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side,
                   const std::string& prefix) {
   const RenderedSide& rendered = session.rendered()->sides[side];

@@ -24,7 +24,8 @@ FrameWork countFrame(gpu::Device& device, TechniqueSource& techniques, const Sce
     for (const OutBase* output : executor.pass(pass.name).outputs())
       if (output->wanted()) work.passes[pass.name].bytes[output->name()] = 0;
   }
-  // Then with every one of them alive to the end: that adds none, and changes nothing in them.
+  // A second frame keeps all these outputs to its end, to read their sizes. Keeping an output wants no
+  // further output and changes no size.
   for (const auto& [pass, held] : work.passes)
     for (const auto& [output, none] : held.bytes) executor.keepOutput(pass, output);
   executor.render(snapshot, 0, PipelineExecutor::Images::no);

@@ -1,4 +1,4 @@
-// What passes do and hold, beside how long they take: counted in a frame of its own.
+// The work and the memory of passes, counted in a frame of its own.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 namespace lumivox::viewer {
 
 struct PassWork {
-  std::vector<WorkBound> bounds;               ///< lowerBounds(): no pass can be faster; empty: not known
-  std::map<std::string, std::uint64_t> bytes;  ///< of what its outputs hold, by their names
+  std::vector<WorkBound> bounds;               ///< lowerBounds() of the pass's time; empty: unknown
+  std::map<std::string, std::uint64_t> bytes;  ///< of its outputs, by their names
 };
 struct FrameWork {
   std::map<std::string, PassWork> passes;
-  std::string why;  ///< no bounds are known; empty: they are
+  std::string why;  ///< bounds are unknown; empty: they are known
 };
 
-/// One frame of an executor that counts, several times slower than others, and keeps every output that is
-/// wanted. Devices that take GLSL count nothing, and without measured peak rates there are no bounds: `why`.
+/// Renders with an executor that counts operations, several times slower than others, and keeps every wanted
+/// output. `why` says why there are no bounds: the device takes GLSL, or its peak rates were not measured.
 FrameWork countFrame(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                      const Pipeline& pipeline, const SceneSnapshot& snapshot, RenderOptions options);
 

@@ -26,7 +26,7 @@ Tone toneOf(Curve curve) {
   return Tone::srgb;
 }
 
-/// The image as colours that displayBytes() takes; NaN where a pixel is none.
+/// The image with one or three channels, as displayBytes() takes it; missing channels are 0.
 ImageBuffer coloursOf(const ImageBuffer& image) {
   if (image.channels() == 1 || image.channels() == 3) return image;
   ImageBuffer colours(image.width(), image.height(), 3);
@@ -60,7 +60,7 @@ std::vector<unsigned char> falseColourRamp() {
   return framed(falseColour(evenSteps(0.0f, 1.0f)), {}).bytes;
 }
 
-/// Blue below 0 and red above, full at 1; NaN where there is no number.
+/// Blue below 0 and red above 0, full at an absolute value of 1; NaN if the value is not finite.
 void putSigned(float value, float* colour) {
   const float strength = std::min(1.0f, std::abs(value));
   colour[0] = value > 0.0f ? strength : 0.0f;
@@ -99,7 +99,7 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
     for (const float value : map.values())
       if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
     if (low > high) low = high = 0.0f;
-    if (low == high) low = std::min(0.0f, low);  // one value is far from nothing
+    if (low == high) low = std::min(0.0f, low);  // a constant image is shown at the far end of a ramp from 0
     for (float& value : map.values()) value = high > low ? (value - low) / (high - low) : 0.0f * value;
     picture = framed(falseColour(map), {});
     picture.legends.push_back(
@@ -132,8 +132,8 @@ Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, Err
     if (map == ErrorMap::squared) {
       colour[0] = colour[1] = colour[2] = static_cast<float>(difference * difference / (mean * mean + 1e-30));
     } else {
-      // Where the reference is dark a hundredth of its mean stands in, as in the relative error of the
-      // report.
+      // In dark pixels of the reference the divisor is a hundredth of its mean, as in the relative error of
+      // the report.
       const auto relative =
           static_cast<float>(difference / std::max<double>(truth.values()[pixel], 0.01 * mean + 1e-30));
       putSigned(relative, colour);

@@ -10,7 +10,7 @@
 namespace lumivox::viewer {
 namespace {
 
-/// Depths as a light sees them, 0..1 between its near and its far plane, as metres behind the near plane.
+/// Converts a light's depths, 0..1 between its near and far plane, to metres behind the near plane.
 void makeDistances(ImageBuffer& depths, const glm::mat4& worldToClip) {
   const glm::dmat4 clipToWorld = glm::inverse(glm::dmat4(worldToClip));
   const auto placeOf = [&](double x, double y, double depth) {

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPrefix = "lumivox_view_";
 
-/// A folder of this user that nobody else may enter, not a link to one.
+/// Whether it is a folder, not a link, that belongs to this user and that nobody else may enter.
 bool isOurs(const struct stat& is) {
   return S_ISDIR(is.st_mode) && is.st_uid == geteuid() && (is.st_mode & (S_IRWXG | S_IRWXO)) == 0;
 }
@@ -30,7 +30,7 @@ int opened(const fs::path& folder) {
   return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/// Whether the open folder is still the one of that name.
+/// Whether the path still names the open folder.
 bool isStill(int folder, const fs::path& path) {
   struct stat open {
   }, named{};
@@ -38,7 +38,8 @@ bool isStill(int folder, const fs::path& path) {
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-/// Whoever may write into a folder that is not sticky may rename what others have in it.
+/// Throws if another user could replace files in the folder: anyone who may write into a folder without the
+/// sticky bit may rename all files in it.
 void requireKept(const fs::path& folder) {
   struct stat is {};
   if (stat(folder.c_str(), &is) != 0)
@@ -51,7 +52,7 @@ void requireKept(const fs::path& folder) {
                     folder.string()));
 }
 
-/// Removes what processes left that ended without a chance to: what is theirs no longer is no longer locked.
+/// Removes the folders of processes that ended without doing so: their locks ended with them.
 void removeLeftBehind() {
   std::error_code failed;
   const fs::path among = fs::temp_directory_path(failed);
@@ -86,7 +87,7 @@ void PrivateFolder::make() {
     if (mkdtemp(name.data()) == nullptr)
       throw Error(fmt::format("{}: no folder can be made there for changed techniques, {}", among.string(),
                               std::strerror(errno)));
-    // Another process that begins may take it for one that was left behind before it is locked.
+    // Until it is locked, another process that starts may take it for an abandoned one and remove it.
     const int folder = opened(name);
     if (folder >= 0 && flock(folder, LOCK_EX | LOCK_NB) == 0 && isStill(folder, name)) {
       path_ = name;

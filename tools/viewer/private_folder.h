@@ -1,14 +1,14 @@
-// A folder among temporary files that no other user can read, write or put in place of ours: libraries are
-// opened from it.
+// A temporary folder that no other user can read, write or replace, since the program opens libraries from
+// it.
 #pragma once
 
 #include <filesystem>
 
 namespace lumivox::viewer {
 
-/// Made when it is first asked for, as `lumivox_view_XXXXXX` with letters that nobody can guess and for its
-/// owner alone, and removed at the end. While its process lives it is locked; what a process left that was
-/// killed is removed by the next one of the same user.
+/// Made on first use as `lumivox_view_XXXXXX`, with unpredictable letters and access for its owner alone;
+/// removed by the destructor. It is locked while its process lives, so that the next process of the same user
+/// can remove the folder of one that was killed.
 class PrivateFolder {
  public:
   /// Removes folders of processes that are gone.
@@ -17,10 +17,10 @@ class PrivateFolder {
   PrivateFolder(const PrivateFolder&) = delete;
   PrivateFolder& operator=(const PrivateFolder&) = delete;
 
-  /// Makes it where there is none, or no longer the one that was made. Error when it cannot, or when others
-  /// may exchange what lies in the folder of temporary files.
+  /// The folder, which is made anew if it is absent or is no longer the one that was made. Error if that
+  /// fails, or if other users may replace files in the system's temporary folder.
   const std::filesystem::path& path();
-  /// Whether the folder that was made is still there under its name, and its user's alone.
+  /// Whether the folder still exists under its name, for this user alone.
   bool isSound() const;
   void remove();
 

@@ -9,15 +9,15 @@
 namespace lumivox::viewer {
 
 struct ProgramResult {
-  int exitCode = -1;   ///< 128 and the signal's number of one that a signal ended
-  std::string errors;  ///< what it wrote to standard error
+  int exitCode = -1;   ///< 128 plus the signal's number if a signal ended it
+  std::string errors;  ///< its standard error
 };
 
-/// Runs the words as a command line, without a shell, and ends it early when `stop` becomes true. Error when
-/// it cannot be started.
+/// Runs a command line without a shell, and ends it early once `stop` becomes true. Error if it cannot be
+/// started.
 ProgramResult runProgram(const std::vector<std::string>& words, const std::atomic<bool>* stop = nullptr);
 
-/// The file of a program that lies beside this one; AbsentError that names it otherwise.
+/// The file of a program beside this one. AbsentError, naming the program, if it is not there.
 std::filesystem::path programBeside(const std::string& name);
 
 }  // namespace lumivox::viewer

@@ -40,7 +40,7 @@ ReferenceWorker::Work makeReferenceWork() {
     const auto start = std::chrono::steady_clock::now();
     ConvergingReference so{wish, {}, 0, 0.0, {}};
     try {
-      // The tracer takes cameras by name.
+      // The tracer finds the camera by its name.
       Scene scene = *wish.scene;
       scene.cameras = {wish.camera};
       ReferenceOptions options;

@@ -1,4 +1,4 @@
-// The path-traced reference of the current view, which converges in rounds while somebody looks.
+// The path-traced reference of the current view, which converges in rounds while the window shows it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct ReferenceWish {
   double time = 0.0;
   int width = 0, height = 0;
   std::vector<int> bounceLayers;
-  int samples = 0;  ///< per pixel, at which it is good enough
+  int samples = 0;  ///< per pixel, after which it stops
   bool isSameView(const ReferenceWish& other) const;
 };
 
@@ -29,18 +29,18 @@ struct ConvergingReference {
   LayeredImage image;
   int samples = 0;
   double seconds = 0.0;
-  std::string error;  ///< why there is none; empty: there is
+  std::string error;  ///< why there is no reference; empty: there is one
 };
 /// Shared: an image has dozens of layers.
 using ReferenceResult = std::shared_ptr<const ConvergingReference>;
 using ReferenceWorker = LatestWorker<ReferenceWish, ReferenceResult>;
 
-/// Rounds of 2, 2, 4, 8, ... up to 64 samples on all cores but one, so that the window keeps its own. Round i
-/// has the seed i + 1, so that the same wish converges in the same way.
+/// Rounds of 2, 2, 4, 8, ... up to 64 samples per pixel on all cores but one, which is left to the window.
+/// Round i has the seed i + 1, so that the same wish gives the same images.
 ReferenceWorker::Work makeReferenceWork();
 
-/// Adds independent means to a mean: of every layer the mean weighted by samples, of every variance the
-/// square of the weights. Both must have the same layers.
+/// Adds a round to a mean of independent rounds: means are weighted by their samples, variances by the
+/// squares of these weights. Both must have the same layers.
 void addRound(LayeredImage& mean, int samples, const LayeredImage& round, int roundSamples);
 
 }  // namespace lumivox::viewer

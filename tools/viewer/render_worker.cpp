@@ -37,12 +37,12 @@ PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource&
   return contract;
 }
 
-/// The passes before each, by the words of the text that connect its inputs.
+/// When each pass runs, from all that it and the passes before it read. The text's input statements connect
+/// the passes.
 std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const PipelineExecutor& executor) {
   std::map<std::string, Reads> all;
   for (const PassText& text : pipeline.passes) all[text.name] = executor.pass(text.name).readsFrom();
-  // As often as there are passes: then what the first reads has reached the last, in whatever order they
-  // stand.
+  // Repeated once per pass, so that reads propagate along the longest chain whatever the order in the text.
   for (std::size_t i = 0; i < pipeline.passes.size(); ++i)
     for (const PassText& text : pipeline.passes)
       for (const dsl::Item& item : text.block->items) {
@@ -76,7 +76,7 @@ RenderOptions optionsOf(const RenderWish& wish, const Side& side) {
   return options;
 }
 
-/// One executor and what it was made for.
+/// An executor with the wish that it was made for.
 class Executor {
  public:
   Executor(gpu::Device& device, TechniqueSource& techniques, const RenderWish& wish, const Side& side)
@@ -88,7 +88,7 @@ class Executor {
     readContracts(techniques);
   }
 
-  /// Whether it can render this by changing what differs.
+  /// Whether change() suffices to render this wish.
   bool suits(const RenderWish& wish, const Side& side) const {
     return side.pipeline->hash == pipeline_->hash && wish.keepEverything == keepsEverything_;
   }
@@ -117,7 +117,7 @@ class Executor {
     return side;
   }
 
-  /// Once more, with nothing kept and each pass timed.
+  /// Renders the frame again with every pass run and timed.
   void time(RenderedSide& side, const SceneSnapshot& snapshot) {
     executor_->invalidate();
     executor_->render(snapshot, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
@@ -155,7 +155,7 @@ class Executor {
   bool keepsEverything_;
   ParameterValues values_;
   std::uint64_t seed_ = 1;
-  std::pair<std::string, std::string> kept_;  ///< the port that stays after a frame
+  std::pair<std::string, std::string> kept_;  ///< the port that is kept after a frame
   std::vector<PassRecord> times_;
   std::vector<PassContract> contracts_;
   std::map<std::string, RunsWhen> runs_;
@@ -187,7 +187,7 @@ class Renderer {
     rendered.software = device_->info().software;
     if (techniques_ == nullptr || wish.techniques != directories_) {
       executors_.clear();
-      // Code of passes that are gone may still be on a stack of destructors: libraries stay.
+      // Libraries stay loaded, since code of removed passes may still run, for example in destructors.
       if (techniques_ != nullptr) earlier_.push_back(std::move(techniques_));
       techniques_ = std::make_unique<TechniqueSet>(wish.techniques);
       directories_ = wish.techniques;
@@ -210,13 +210,14 @@ class Renderer {
     return rendered;
   }
 
-  /// Whether there is more to be told of a frame than its images; while others wait, now and then.
+  /// Whether to time or count this frame. While other wishes wait, this happens at most once per
+  /// kLongestUntimed.
   bool wantsMore(const Rendered& rendered, bool othersWait) const {
     const RenderWish& wish = rendered.wish;
     return (wish.timesPasses || wish.countsWork) && device_ != nullptr &&
            (!othersWait || Clock::now() - measured_ > kLongestUntimed);
   }
-  /// Times and counts what was rendered last.
+  /// Times and counts the passes of the last frame.
   void measure(Rendered& rendered) {
     const RenderWish& wish = rendered.wish;
     for (std::size_t i = 0; i < rendered.sides.size(); ++i) {
@@ -237,7 +238,7 @@ class Renderer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds kLongestUntimed{1};  // while somebody moves without a pause
+  static constexpr std::chrono::seconds kLongestUntimed{1};  // while wishes follow without a pause
 
   static SceneSnapshot snapshotOf(const RenderWish& wish) {
     return snapshotFrom(*wish.scene, wish.time, wish.camera, wish.width, wish.height);
@@ -250,12 +251,12 @@ class Renderer {
       if (executor != nullptr && executor->suits(wish, side)) {
         executor->change(wish, side, *techniques_);
       } else {
-        executor.reset();  // gives its memory back first
+        executor.reset();  // frees its memory first
         executor = std::make_unique<Executor>(*device_, *techniques_, wish, side);
       }
       return executor->render(snapshotOf(wish));
     } catch (const std::exception& error) {
-      executor.reset();  // whatever state it is in, the next frame begins anew
+      executor.reset();  // its state is unknown: the next frame makes a new one
       RenderedSide failed;
       failed.error = error.what();
       return failed;
@@ -263,7 +264,7 @@ class Renderer {
   }
 
   std::unique_ptr<gpu::Device> device_;
-  std::unique_ptr<VoxelView> voxels_;  ///< once some were looked at
+  std::unique_ptr<VoxelView> voxels_;  ///< made when voxels are first shown
   std::string deviceError_;
   std::vector<std::unique_ptr<TechniqueSet>> earlier_;
   std::unique_ptr<TechniqueSet> techniques_;
@@ -288,7 +289,7 @@ const char* wordOf(RunsWhen when) {
 
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
   return [renderer = std::make_shared<Renderer>(options)](const RenderWish& wish, RenderWorker::Turn& turn) {
-    // The picture first: whoever moves does not wait for times.
+    // The picture comes before the times, so that movement stays smooth.
     Rendered rendered = renderer->render(wish);
     if (renderer->wantsMore(rendered, turn.outdated())) {
       turn.give(rendered);

@@ -1,5 +1,5 @@
-// The frames of the viewer: the device, the techniques and the executors, on a thread of their own, so that
-// the window goes on while a frame takes long. The device is the one that renders without a window.
+// Renders the viewer's frames: device, techniques and executors on a thread of their own, so that a slow
+// frame never blocks the window. The device is the same as for rendering without a window.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,14 @@
 
 namespace lumivox::viewer {
 
-/// One of the two that are rendered in the same frame.
+/// One of at most two pipelines that are rendered for the same frame.
 struct Side {
   std::shared_ptr<const Pipeline> pipeline;
-  ParameterValues values;  ///< over the defaults
+  ParameterValues values;  ///< override the defaults
 };
 
 struct RenderWish {
-  std::uint64_t number = 0;  ///< larger for later ones
+  std::uint64_t number = 0;  ///< increases with every wish
   std::shared_ptr<const Scene> scene;
   Camera camera;
   double time = 0.0;
@@ -36,15 +36,15 @@ struct RenderWish {
   std::uint64_t seed = 1;
   bool keepEverything = false, timesPasses = false, countsWork = false;
   std::vector<Side> sides;
-  std::optional<PortChoice> port;  ///< of the first side
-  /// Where technique libraries are sought; another list opens them anew.
+  std::optional<PortChoice> port;  ///< a port of the first side
+  /// Folders with technique libraries; if the list changes, they are opened again.
   std::vector<std::filesystem::path> techniques;
 };
 
 /// A parameter of a pass as its technique declares it.
 struct PassParameter {
   std::string name, meaning, unit, value, defaultText;
-  std::vector<std::string> choices;  ///< of words and switches
+  std::vector<std::string> choices;  ///< for words and switches
   bool number = false, integer = false;
   double low = 0.0, high = 0.0;
 };
@@ -58,8 +58,8 @@ struct PassContract {
   std::vector<Port> outputs;
 };
 
-/// When a pass runs, by what it and the passes before it read: once; when time goes on, so that something may
-/// move; whenever the camera moves, too.
+/// When a pass runs, from all that it and the passes before it read. somethingMoves: when time advances.
+/// everyFrame: also when the camera moves.
 enum class RunsWhen { once, somethingMoves, everyFrame };
 const char* wordOf(RunsWhen when);  ///< "once", "when something moves", "when the camera moves"
 
@@ -70,8 +70,8 @@ struct RenderedSide {
   std::vector<PassContract> contracts;
   std::map<std::string, RunsWhen> runs;  ///< of passes
   std::uint64_t bytes = 0;
-  std::vector<PassRecord> times;  ///< of the last frame whose passes were timed
-  bool timed = false;             ///< they are of this one
+  std::vector<PassRecord> times;  ///< of the last timed frame
+  bool timed = false;             ///< `times` are of this frame
   FrameWork work;                 ///< with RenderWish::countsWork
   std::string error;              ///< why there is no frame; empty: there is one
 };
@@ -79,15 +79,15 @@ struct Rendered {
   RenderWish wish;
   std::vector<RenderedSide> sides;
   PortPicture port;                     ///< of RenderWish::port
-  std::string portError, device;        ///< device: its renderer and how programs reach it
-  std::vector<std::string> techniques;  ///< that are there
-  std::string skipped;                  ///< libraries that do not fit, and why: another one, or none, serves
+  std::string portError, device;        ///< device: its renderer and program route
+  std::vector<std::string> techniques;  ///< available ones
+  std::string skipped;                  ///< unusable libraries with reasons; another copy, or none, is used
   bool software = false;
 };
 
 using RenderWorker = LatestWorker<RenderWish, Rendered>;
 
-/// The work of such a worker. A device that cannot be opened is an error of every frame.
+/// The work of a RenderWorker. If the device cannot be opened, every frame has that error.
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options);
 
 }  // namespace lumivox::viewer

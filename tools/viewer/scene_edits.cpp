@@ -11,10 +11,10 @@
 namespace lumivox::viewer {
 namespace {
 
-// As the scene's own text may exceed 1.
+// By as much the scene's own text may exceed 1.
 constexpr float kAlbedoSlack = 1e-6f;
 
-/// Leaves an object's triangles and vertices out.
+/// Removes objects with their triangles and vertices.
 void removeObjects(Scene& scene, const std::set<std::string>& off) {
   Scene kept;
   std::vector<Object> objects;
@@ -171,7 +171,7 @@ void editCameras(Scene& scene, const SceneEdits& edits) {
     camera.eye = edit.eye.value_or(camera.eye);
     camera.target = edit.target.value_or(camera.target);
     camera.fov = edit.fov.value_or(camera.fov);
-    snapshotFrom(scene, 0.0, camera);  // refuses one that looks nowhere
+    snapshotFrom(scene, 0.0, camera);  // throws for a view without a direction
   }
 }
 

@@ -1,4 +1,4 @@
-// What was switched off or changed in the scene panel, apart from the scene's text.
+// The edits of the scene panel, kept apart from the scene's text.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,7 +12,7 @@
 
 namespace lumivox::viewer {
 
-/// Other values of a material; what is absent stays as the scene has it.
+/// New values of a material; absent ones keep the scene's value.
 struct MaterialEdit {
   std::optional<glm::vec3> diffuse, specular, emission;
   std::optional<float> exponent;
@@ -41,32 +41,32 @@ struct SceneEdits {
   bool empty() const { return *this == SceneEdits(); }
 };
 
-/// A surface whose emission is an area light's is called MATERIAL@LIGHT: the name without the light, and the
-/// light's, empty where it is none.
+/// The material of an area light's surface is called MATERIAL@LIGHT. materialName(): the name without the
+/// light. areaLightOf(): the light's name, empty if it is no area light.
 std::string materialName(const Material& material);
 std::string areaLightOf(const Material& material);
 
-/// A light of the scene as it is edited: one without extent, or the name of an area light.
+/// A light as it can be edited: a light without extent, or an area light.
 struct EditableLight {
   std::string name;
   bool area = false;
   glm::vec3 power{0.0f};
 };
 std::vector<EditableLight> editableLights(const Scene& scene);
-/// Materials, each once by its name, with the emission that is its own.
+/// Materials without duplicate names, with their own emission instead of an area light's.
 std::vector<Material> editableMaterials(const Scene& scene);
 
 /// What can be switched off in a scene: "environment", "gloss", "light NAME", "object NAME", "medium NAME".
 std::vector<std::string> partsOf(const Scene& scene);
 
-/// The scene with the edits. Names that it lacks are passed over: the text may have changed since. Its hash
-/// is that of the scene and the edits. Error when a material then reflects more than it receives, or a camera
-/// looks nowhere.
+/// The scene with the edits; its hash covers the scene and the edits. Names that the scene lacks are ignored,
+/// since the text may have changed. Error if a material would reflect more than it receives, or if a camera
+/// has no view direction.
 Scene edited(const Scene& scene, const SceneEdits& edits);
 
-/// The scene's text with these edits, and with a camera `view` as its first where one is given, in the
-/// canonical layout: a text for the folder of the scene's own. It was read, and gives the edited scene; Error
-/// when it cannot, as for what an included file says.
+/// The scene's text with these edits in the canonical layout, for a file in the same folder. `view`, if
+/// given, becomes its first camera. The text was parsed and gives the edited scene. Error if it cannot
+/// express the edits, such as those of an included file.
 std::string textWithEdits(const Scene& scene, const SceneEdits& edits, const Camera* view,
                           const SceneLoadOptions& options);
 

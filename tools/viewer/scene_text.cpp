@@ -1,4 +1,4 @@
-// What was edited in a scene, as its text says it.
+// Writes the edits of a scene into its text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,19 +25,19 @@ std::string inQuotes(const std::string& name) {
   return value.written();
 }
 
-/// The mesh in MESH/OBJECT or MESH/MTL, and the rest, empty where there is none.
+/// Splits MESH/OBJECT or MESH/MTL; the second part is empty if there is none.
 std::pair<std::string, std::string> meshAndRest(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::pair(name, std::string())
                                     : std::pair(name.substr(0, slash), name.substr(slash + 1));
 }
 
-/// The text while it is changed.
+/// The scene's text during the change.
 class SceneText {
  public:
   SceneText(const Scene& scene, const SceneEdits& edits)
       : scene_(scene), edits_(edits), result_(edited(scene, edits)) {
-    // Includes as they are written.
+    // Parsed without expanding includes, which stay as they are written.
     document_ = dsl::parse(dsl::parseFile(scene.file).source, scene.file);
     if (!document_.findings.empty()) throw DiagnosticsError(document_.findings);
     for (dsl::Item& top : document_.items)
@@ -82,7 +82,7 @@ class SceneText {
     return *found->block;
   }
   void remove(const std::string& word, const std::string& name) {
-    block(word, name);  // that there is one
+    block(word, name);  // throws if there is none
     std::erase_if(*items_, [&](const dsl::Item& item) { return isCalled(item, word, name); });
   }
 
@@ -93,7 +93,8 @@ class SceneText {
     if (!off && power == edits_.powers.end()) return;
     dsl::Block& text = block("light", light.name);
     const std::string kind = text.header.back().text;
-    // An area light that is off covers what its surfaces emit by themselves.
+    // An area light that is off stays with radiance 0: without it, its surfaces would show their material's
+    // own emission.
     replaceProperty(text, fmt::format("{} {}",
                                       kind == "area"          ? "radiance"
                                       : kind == "directional" ? "irradiance"
@@ -127,7 +128,8 @@ class SceneText {
     }
   }
 
-  /// What differs from the scene's own; a material of a model file becomes one of the text.
+  /// Writes the properties that differ from the scene's own. A material of a model file becomes one of the
+  /// text.
   void writeMaterial(const Material& material) {
     const std::vector<Material> before = editableMaterials(scene_);
     const auto was = std::find_if(before.begin(), before.end(),
@@ -145,13 +147,13 @@ class SceneText {
 
   void addMaterial(const Material& material) {
     const auto [mesh, mtl] = meshAndRest(material.name);
-    if (mtl.empty()) block("material", material.name);  // says that there is none
+    if (mtl.empty()) block("material", material.name);  // throws: the text has no such material
     dsl::Block& text = block("mesh", mesh);
     std::string name = mtl;
     while (find("material", name) != items_->end()) name += "_edited";
     const auto image = [&](const char* word, int texture) -> std::string {
       if (texture < 0) return {};
-      // MTL files name images beside themselves.
+      // An MTL file names images relative to its own folder.
       std::string file;
       for (const dsl::Item& item : text.items)
         if (item.property && item.property->word == "file") file = item.property->values.front().text;
@@ -161,7 +163,7 @@ class SceneText {
           inQuotes((folder / scene_.textures[static_cast<std::size_t>(texture)].name).generic_string()));
     };
     dsl::Item use = itemOf(fmt::format("use {{ mtl {} material {} }}", inQuotes(mtl), inQuotes(name)));
-    // Before the others, which win where they say something.
+    // Inserted before the other `use` blocks, since later ones override it.
     const auto first = std::find_if(text.items.begin(), text.items.end(), [](const dsl::Item& item) {
       return item.block && item.block->word == "use";
     });
@@ -186,7 +188,7 @@ class SceneText {
       } else if (find("mesh", mesh) != items_->end()) {
         remove("mesh", mesh);
       }
-      // What shone on it or moved it alone.
+      // Also removes the lights and animations of this object.
       std::erase_if(*items_, [&, &object = object, &mesh = mesh](const dsl::Item& item) {
         if (!item.block || item.block->header.empty()) return false;
         std::string target;
@@ -215,7 +217,7 @@ class SceneText {
   std::vector<dsl::Item>* items_ = nullptr;
 };
 
-/// What a picture shows of a material.
+/// Whether two materials look the same.
 bool looksAlike(const Scene& a, const Material& one, const Scene& b, const Material& other) {
   const auto sameImage = [&](int first, int second) {
     if ((first < 0) != (second < 0)) return false;
@@ -229,7 +231,7 @@ bool looksAlike(const Scene& a, const Material& one, const Scene& b, const Mater
          sameImage(one.diffuseTexture, other.diffuseTexture) && sameImage(one.maskTexture, other.maskTexture);
 }
 
-/// The first thing in which two scenes would look different; empty: none.
+/// The first visible difference of two scenes, in words; empty if there is none.
 std::string differenceOf(const Scene& a, const Scene& b) {
   if (a.environment != b.environment) return "the environment";
   if (a.lights.size() != b.lights.size()) return "the lights";

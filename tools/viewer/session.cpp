@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWatchSeconds = 0.25;  // between looks at the files
+constexpr double kWatchSeconds = 0.25;  // between checks of the files
 constexpr std::size_t kMostUndo = 1000;
 
-/// Statements that change what is made or how it is judged, and so can be undone; looking around cannot.
+/// Whether the statement can be undone: it changes what is rendered, not only how it is looked at.
 bool isUndoable(const Action& action) {
   static const std::set<std::string> words{
       "set",         "reset",    "show",   "beside",          "swap", "off", "on", "light",
@@ -34,7 +34,7 @@ std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions&
   for (const fs::path& file : options.pipelines)
     pipelines.push_back(std::make_shared<const Pipeline>(Pipeline::load(file)));
   TechniqueSet techniques(options.techniques, options.strict);
-  if (options.strict)  // before the window opens, which could only tell of it
+  if (options.strict)  // throws before the window opens
     for (const auto& pipeline : pipelines)
       for (const std::string& name : pipeline->techniques()) techniques.technique(name);
   if (!pipelines.empty()) return pipelines;
@@ -78,7 +78,7 @@ Session::~Session() = default;
 
 std::shared_ptr<const Scene> Session::editedScene(const std::shared_ptr<const Scene>& scene,
                                                   const SceneEdits& edits) const {
-  // What is as it was stays the very same scene: who holds it need not look at its contents.
+  // An unchanged scene stays the same object, so that holders need not compare contents.
   if (editedFrom_ == scene && applied_ == edits) return edited_;
   return edits.empty() ? scene : std::make_shared<const Scene>(edited(*scene, edits));
 }
@@ -126,13 +126,13 @@ std::vector<Action> Session::perform(const std::string& statements) {
 
 bool Session::perform(const Action& action) {
   const ViewState before = state_;
-  bool keeps = false;  // what is there: nothing is rendered anew
+  bool keeps = false;  // true: only something is saved, and no frame is rendered
   try {
     if (!doLook(action) && !doChange(action)) {
       keeps = doKeep(action);
       if (!keeps) return false;
     }
-    applyEdits(state_.edits);  // refuses what a text could not say either
+    applyEdits(state_.edits);  // throws for edits that a text could not express
   } catch (const std::exception& error) {
     state_ = before;
     say(error.what(), true);
@@ -160,7 +160,7 @@ void Session::watchFiles() {
     try {
       for (const fs::path& included : dsl::parseFile(file).includedFiles) files.insert(included);
     } catch (const Error&) {
-      // It is gone; it may come back.
+      // The file is absent; it may come back.
     }
   };
   addText(options_.scene);
@@ -192,7 +192,7 @@ bool Session::step(double seconds) {
     }
     if (techniques_.update()) stateChanged_ = pictureChanged_ = true;
   }
-  // Edits that kept a text from being taken may be gone.
+  // The edits changed with which a text was refused: try it again.
   if (!textProblem_.empty() && !(state_.edits == refusedWith_)) readChangedFiles();
   if (stateChanged_) wantFrame();
   takeResults();
@@ -203,7 +203,7 @@ bool Session::step(double seconds) {
 }
 
 void Session::wantFrame() {
-  // A frame at a time: while time goes on each would be passed over for the next.
+  // While time advances, only one frame is requested at a time: otherwise each would be skipped for the next.
   if (state_.plays && renderer_.busy()) return;
   stateChanged_ = false;
   frameProblem_.clear();

@@ -1,5 +1,5 @@
-// What happens in the viewer, without a window: the state, what is done to it, the workers behind it, and the
-// picture that comes of it.
+// The viewer without a window: the state, the statements that change it, the workers, and the resulting
+// picture.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace lumivox::viewer {
 
-/// Times of a pass over the last frames that were timed.
+/// Times of a pass over the last timed frames.
 struct PassTimes {
   std::string name;
   TimingStatistics device, host;  ///< ms
@@ -32,91 +32,93 @@ struct PassTimes {
   RunsWhen when = RunsWhen::everyFrame;
 };
 
-/// Something that was tried, with what it cost and how wrong it was: a point of the chart.
+/// Settings that were tried, with their frame time and error: a point of the chart.
 struct TriedPoint {
   std::string label, key;
   Side side;
   double frameMs = 0.0;
-  std::vector<double> times;                              ///< of all frames, of which frameMs is the median
-  std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last frames that were timed
+  std::vector<double> times;                              ///< ms of all frames; frameMs is their median
+  std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last timed frames
   std::optional<Measured> error;                          ///< FLIP of the whole image
 };
 
-/// A text for a file that was there already: it is asked for.
+/// A text whose file exists already, until the user answers whether to overwrite it.
 struct TextToWrite {
   std::filesystem::path file;
   std::string text;
 };
 
-/// The passes of a frame whose passes were timed, of each side.
+/// The passes of a timed frame, by side.
 struct TimedFrame {
-  double seconds = 0.0;  ///< since the session began
+  double seconds = 0.0;  ///< since the process started
   std::vector<std::vector<PassRecord>> sides;
 };
 
 class Session {
  public:
-  /// `wake` is called from other threads when something new is there. Error when a text is wrong.
+  /// `wake` is called from other threads when a worker has a result. Error if a text is wrong.
   Session(const SessionOptions& options, std::function<void()> wake);
   ~Session();
 
-  /// Does statements of the grammar that need no window; returns those that do. What is wrong with them
-  /// becomes message(), and nothing of that statement is done.
+  /// Performs the statements that need no window, and returns those that do. An error becomes message(), and
+  /// its statement has no effect.
   std::vector<Action> perform(const std::string& statements);
-  /// The same for one; false: it needs the window.
+  /// The same for one statement. False: it needs the window.
   bool perform(const Action& action);
-  /// Goes on: time, files, workers. Whether what is seen has changed.
+  /// Advances the time by `seconds`, checks the files and takes results from the workers. Returns whether the
+  /// picture changed.
   bool step(double seconds);
 
   const ViewState& state() const { return state_; }
   const Scene& scene() const { return *scene_; }  ///< as its text has it
   const Scene& shownScene() const { return *edited_; }
   const std::vector<std::shared_ptr<const Pipeline>>& pipelines() const { return pipelines_; }
-  RenderedResult rendered() const { return rendered_; }     ///< the last; null before the first
+  RenderedResult rendered() const { return rendered_; }     ///< the last frame; null before the first
   ReferenceResult reference() const { return reference_; }  ///< of this view; null while there is none
   std::shared_ptr<const Judged> judged() const { return judged_; }
   const Picture& picture() const { return picture_; }
   const std::vector<TriedPoint>& tried() const { return tried_; }
-  static constexpr double kFrameSeconds = 10.0;  ///< that timedFrames() go back
-  /// Of the last seconds before the newest, the oldest first.
+  static constexpr double kFrameSeconds = 10.0;  ///< that timedFrames() covers
+  /// The timed frames of the last kFrameSeconds, oldest first.
   const std::deque<TimedFrame>& timedFrames() const { return timedFrames_; }
-  /// From the program's start to the first picture; nothing before it.
+  /// Seconds from the process's start to the first picture; nothing before that.
   std::optional<double> firstPictureSeconds() const { return firstPicture_; }
-  /// Of the passes of one side as it is now, in their order.
+  /// The times of the passes of one side with its present settings, in the order of the passes.
   std::vector<PassTimes> passTimes(std::size_t side) const;
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
-  const std::string& message() const { return message_; }  ///< the last thing that went wrong or was done
+  const std::string& message() const { return message_; }  ///< the last error or completed action
   bool messageIsError() const { return messageIsError_; }
-  /// What waits for `answer`, as a sentence; empty: nothing.
+  /// The question that waits for `answer`; empty: none.
   std::string question() const;
-  /// Passes are timed while somebody may look at the times.
+  /// Passes are timed only while the panels are shown.
   void showPanels(bool shown) {
     stateChanged_ = stateChanged_ || shown != showsPanels_;
     showsPanels_ = shown;
   }
-  /// Whether changes from now on are one with the change before, to be undone together: those of one
-  /// movement of a hand.
+  /// Whether the changes from now on are undone together with the one before, as those of one drag of the
+  /// mouse.
   void joinChanges(bool join) { joins_ = join; }
   void say(const std::string& message, bool error);
-  /// What is wrong with the texts, the shaders or the frame now, over the last good picture; empty: nothing.
+  /// The present fault of the texts, the shaders or the frame, which is shown over the last good picture;
+  /// empty: none.
   std::string problem() const;
   double exposure() const { return exposure_; }
-  /// The image under a point of the picture, of each output and the reference's: lines of text.
+  /// The values at a pixel of the picture, of each output and of the reference, as lines of text.
   std::vector<std::string> valuesAt(int x, int y) const;
-  /// The command that repeats the picture. Error where the texts do not say what is shown.
+  /// The command that repeats the picture. Error if the texts do not contain all that is shown.
   std::string command() const;
-  std::vector<std::string> history() const { return log_; }  ///< statements, as a script has them
+  std::vector<std::string> history() const { return log_; }  ///< statements as in a script
   std::size_t undoable() const { return undo_.size(); }
   std::size_t redoable() const { return redo_.size(); }
-  /// Whether the frame of the present state is there, and judged by what there is of a reference.
+  /// Whether the frame of the present state is complete, and judged against the reference so far.
   bool settled() const;
   bool judgedNow() const;
-  /// Whether something happens by itself: the picture must be asked for again soon.
+  /// Whether the picture changes without input, so that step() must be called again soon.
   bool moves() const;
   bool tracing() const { return tracer_.busy(); }
-  bool keeping() const { return keeping_; }  ///< whether a program still writes what was asked for
-  /// Gives up whatever is under way; whether it ended before `seconds` were over. What did not can only be
-  /// left behind, with the process.
+  bool keeping() const { return keeping_; }  ///< whether a program is still writing a file
+  /// Stops all workers. Returns whether they ended within `seconds`; otherwise the session must not be
+  /// destroyed, only the process ended.
   bool stop(double seconds);
 
  private:
@@ -133,7 +135,7 @@ class Session {
   Camera framed(const Camera& camera, const std::string& what) const;
   void setParameters(const Action& action);
   void resetParameter(const std::string& name);
-  /// Whether the scene has such a part, which then is as its text has it.
+  /// Takes back the edits of a part. Returns whether the scene has such a part.
   bool resetScene(const std::string& name);
   bool editScene(const Action& action);
   std::string sceneText();
@@ -158,14 +160,14 @@ class Session {
                                            const SceneEdits& edits) const;
   void applyEdits(const SceneEdits& edits);
 
-  static constexpr double kFlickerSeconds = 0.5;  ///< a picture of two that flicker
+  static constexpr double kFlickerSeconds = 0.5;  ///< for each of two pictures that flicker
 
   SessionOptions options_;
   std::shared_ptr<const Scene> scene_, edited_, editedFrom_;
   std::vector<std::shared_ptr<const Pipeline>> pipelines_;
   ViewState state_;
   SceneEdits applied_;
-  SceneEdits refusedWith_;  ///< the edits with which textProblem_ came
+  SceneEdits refusedWith_;  ///< the edits that gave textProblem_
   std::vector<ViewState> undo_, redo_;
   std::vector<std::string> log_;
   std::string message_, textProblem_, frameProblem_;
@@ -195,10 +197,10 @@ class Session {
   RenderWorker renderer_;
 };
 
-/// The default of a pipeline's parameter, or what a text makes of a pass's: the pipeline with the statements
-/// of a `set` block in the block of that pass. DiagnosticsError when the text is then wrong.
+/// The pipeline with the statements of a `set` block added to the block of that pass. Throws DiagnosticsError
+/// if its text is then wrong.
 Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, const dsl::Block& values);
-/// The pipeline's text with these defaults, in the canonical layout.
+/// The pipeline's text with these values as defaults, in the canonical layout.
 std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& values);
 
 }  // namespace lumivox::viewer

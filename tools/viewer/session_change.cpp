@@ -1,4 +1,4 @@
-// What is made and how it is judged: statements that can be undone, and undoing them.
+// Statements that change what is rendered and can be undone, and undo itself.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,14 +119,14 @@ void Session::stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to,
   ViewState now = state_;
   for (int i = 0; i < steps && !left.empty(); ++i) {
     done.push_back(now);
-    // Where one looks from, and how, is nothing that is undone.
+    // The view is not undone.
     now.sides = std::move(left.back().sides);
     now.edits = std::move(left.back().edits);
     now.keepEverything = left.back().keepEverything;
     now.seed = left.back().seed;
     left.pop_back();
   }
-  applyEdits(now.edits);  // a text that has changed since may refuse them: then nothing is done
+  applyEdits(now.edits);  // throws, before any change, if a text that has changed since refuses them
   state_ = std::move(now);
   from = std::move(left);
   to = std::move(done);
@@ -208,7 +208,7 @@ bool Session::doChange(const Action& action) {
   } else if (word == "environment") {
     state_.edits.environment = colourOf(action);
   } else if (editScene(action)) {
-    // perform() refuses what a text could not say either.
+    // perform() throws for edits that a text could not express.
   } else if (word == "keep_everything") {
     state_.keepEverything = action.flag();
   } else if (word == "seed") {

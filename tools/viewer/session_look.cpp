@@ -1,4 +1,4 @@
-// Where one looks from, at what, and how: statements that nobody takes back.
+// Statements that change the view, which are not undone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ void Session::freeCamera(const std::function<Camera(Camera)>& change) {
   Camera camera = change(cameraOf(state_, *edited_));
   camera.name = "view";
   camera.keys.clear();
-  // Of many steps each is small.
+  // Many small steps could lead beyond the limit of a single statement.
   for (const glm::dvec3& place : {camera.eye, camera.target})
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(place[axis]) <= kFarthest))
@@ -37,7 +37,7 @@ void Session::freeCamera(const std::function<Camera(Camera)>& change) {
   state_.free = std::move(camera);
 }
 
-/// As the camera looks, from where all of an object, or of everything, is seen.
+/// The camera moved back along its direction until it sees all of an object, or of the scene.
 Camera Session::framed(const Camera& camera, const std::string& what) const {
   const SceneSnapshot snapshot = snapshotFrom(*edited_, state_.time, camera, state_.width, state_.height);
   Bounds bounds;
@@ -56,7 +56,7 @@ Camera Session::framed(const Camera& camera, const std::string& what) const {
   if (bounds.empty)
     throw Error(fmt::format("frame '{}': no such object; expected one of {}", what, fmt::join(names, ", ")));
   const glm::dvec3 low(bounds.low), high(bounds.high), centre = snapshot.origin + 0.5 * (low + high);
-  // The sphere around the box touches the sides of the view.
+  // The bounding box's sphere touches the borders of the view.
   const double up = std::tan(0.5 * camera.fov), across = up * state_.width / state_.height;
   const double distance = 0.5 * glm::distance(low, high) / std::sin(std::atan(std::min(up, across)));
   Camera result = camera;

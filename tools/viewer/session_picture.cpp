@@ -1,4 +1,4 @@
-// What the session shows: pictures of outputs, ports, references and errors, and the numbers under a pixel.
+// Composes the picture from outputs, ports, references and errors, and reads the values at a pixel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace lumivox::viewer {
 namespace {
 
-/// What is no light is not brought below white, where that is done to light.
+/// The curve for values that are not radiance: srgb instead of filmic, which compresses bright values.
 Curve plain(Curve curve) {
   return curve == Curve::filmic ? Curve::srgb : curve;
 }
@@ -37,7 +37,7 @@ void Session::compose() {
   } else {
     exposure_ = 0.0;
   }
-  // Fractions are shown as they are.
+  // Fractions are displayed without exposure.
   const bool fraction = !image.isRadiance() && !state_.exposure;
   const PictureLook look{fraction ? 0.0 : exposure_, fraction ? plain(state_.curve) : state_.curve,
                          flicker_ < kFlickerSeconds, image.isRadiance() ? kRadianceUnit : std::string()};
@@ -84,8 +84,8 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
   look.unit = port.unit;
   ImageBuffer values = port.image;
   if (!state_.exposure && port.unit != kRadianceUnit) {
-    // Other quantities know nothing of the exposure of the picture: the largest value is white, colours that
-    // are pure numbers are shown as they are, and light in another unit has an exposure of its own.
+    // The picture's exposure does not apply to other quantities. Of a scalar the largest value is white,
+    // colours without a unit are not exposed, and light in another unit gets an exposure of its own.
     const bool light = port.unit.find('W') != std::string::npos;
     if (!light) look.curve = plain(look.curve);
     float largest = 0.0f;
@@ -98,7 +98,7 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
         : port.unit.empty() && port.brightness.empty() ? outputLook.exposure
                                                        : 0.0;
   }
-  // Directions have negative components: 0 becomes the middle of what can be shown.
+  // Directions have negative components: -1..1 is mapped to 0..1.
   if (port.isDirection && state_.curve != Curve::falseColour)
     for (float& value : values.values()) value = 0.5f + 0.5f * value;
   Picture picture = pictureOf(values, look);
@@ -114,7 +114,7 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
 std::vector<std::string> Session::valuesAt(int x, int y) const {
   std::vector<std::string> lines;
   if (lastGood_ == nullptr || lastGood_->sides.empty()) return lines;
-  // Of pictures side by side, with gaps, all show the same pixels.
+  // Pictures side by side, with gaps, all have the same pixels.
   const bool showsPort = state_.port && !lastGood_->port.image.empty();
   const int width = showsPort ? lastGood_->port.image.width() : lastGood_->wish.width;
   const int pictures = std::max(1, picture_.width / width);

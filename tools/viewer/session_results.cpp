@@ -1,4 +1,4 @@
-// What comes back from the workers, and what is kept of it: pictures, references, judgements, times.
+// Takes the workers' results and keeps them: pictures, references, errors and times.
 #include <fmt/format.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,15 +14,15 @@
 namespace lumivox::viewer {
 namespace {
 
-constexpr std::size_t kFramesKept = 64;  // of which times are told
+constexpr std::size_t kFramesKept = 64;  // whose times are shown
 constexpr std::size_t kMostTimedFrames = 240;
 
-/// Since this process was started, with what the loader and the program did before the session.
+/// Seconds since the process started, including the time before the session.
 double secondsOfProcess() {
   std::ifstream file("/proc/self/stat");
   std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  // The name, in parentheses, may hold anything; the start is the 22nd word, in ticks since the system's
-  // start.
+  // The process's name, in parentheses, may contain spaces. Its start time is field 22, in clock ticks since
+  // boot (proc(5)).
   std::istringstream words(text.substr(std::min(text.size(), text.rfind(')') + 1)));
   std::string word;
   for (int i = 0; i < 20; ++i) words >> word;
@@ -42,7 +42,7 @@ std::string valuesText(const Pipeline& pipeline, const ParameterValues& values) 
   return text;
 }
 
-/// What is alike in everything that costs time.
+/// A key of everything that affects the time of a frame; equal keys share their times.
 std::string keyOf(const Rendered& rendered, std::size_t side) {
   const Side& what = rendered.wish.sides[side];
   return fmt::format("{} {} {} {} {}x{}", what.pipeline->hash.text(), valuesText(*what.pipeline, what.values),
@@ -127,7 +127,7 @@ void Session::noteTried() {
     if (known == tried_.end())
       known =
           tried_.insert(tried_.end(), {valuesText(*what.pipeline, what.values), key, what, 0.0, {}, {}, {}});
-    // A frame that found its results kept says nothing of the cost.
+    // A frame that reused results of earlier frames does not show the cost.
     const bool whole = std::all_of(side.frame.passes.begin(), side.frame.passes.end(),
                                    [](const PassRecord& pass) { return pass.ran; });
     if (rendered_->wish.number != notedFrame_ && whole) known->times.push_back(side.frame.frameMs);
@@ -140,7 +140,7 @@ void Session::noteTried() {
     if (!known->times.empty()) {
       known->frameMs = medianOfTimes(known->times);
     } else {
-      // Passes were timed one by one, with nothing kept; or nothing is known of the cost, 0.
+      // The sum over the passes, which were timed with nothing reused; 0 if none was timed.
       known->frameMs = 0.0;
       for (const auto& [pass, records] : known->passes) {
         std::vector<double> times;
@@ -152,7 +152,7 @@ void Session::noteTried() {
       for (const JudgedOutput& output : judged_->sides[i])
         if (output.output == kWholeImage) known->error = {output.error.flip, output.error.flipUncertainty};
   }
-  // A frame comes once with its images, and once more with its times.
+  // A frame arrives twice: first with its images, then with its times.
   notedFrame_ = rendered_->wish.number;
   if (rendered_->sides.front().timed) notedTimes_ = rendered_->wish.number;
 }

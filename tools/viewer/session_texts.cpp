@@ -1,4 +1,4 @@
-// Texts that change while they are shown: taken as a whole, or not at all.
+// Reloads texts that change while they are shown: all of them, or none.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,20 +9,21 @@
 namespace lumivox::viewer {
 namespace {
 
-/// What the changed text still knows of what was set; whether that is all of it.
+/// Moves a side to its changed text with the values that still fit. Returns whether nothing that was set is
+/// lost.
 bool refresh(Side& side, const std::shared_ptr<const Pipeline>& before,
              const std::shared_ptr<const Pipeline>& again) {
   ParameterValues values;
   for (const auto& [name, value] : side.values)
     for (const PipelineParameter& parameter : again->parameters)
       if (parameter.name == name && parameter.misfit(value).empty()) values[name] = value;
-  // A side whose passes were set has a text of its own.
+  // A side with changed pass parameters has a text of its own, whose changes are lost.
   const bool whole = values.size() == side.values.size() && side.pipeline->hash == before->hash;
   side = {again, std::move(values)};
   return whole;
 }
 
-/// Edits of parts that the text no longer has: they stay, and are seen again when it has them.
+/// Edited parts that the text no longer has. Their edits are kept, and apply again when the part returns.
 std::vector<std::string> lostParts(const Scene& scene, const SceneEdits& edits) {
   std::vector<std::string> known = partsOf(scene), lost;
   for (const Material& material : editableMaterials(scene)) known.push_back("material " + material.name);
@@ -47,8 +48,8 @@ bool Session::readChangedFiles() {
   return takeTexts(state_);
 }
 
-/// Reads all texts, and shows `next` with them. Whether they could be taken: otherwise everything stays as it
-/// was, and problem() says why.
+/// Reads all texts, and shows `next` with them. Returns false if a text is wrong; then nothing changes, and
+/// problem() gives the reason.
 bool Session::takeTexts(ViewState next) {
   stateChanged_ = pictureChanged_ = true;
   refusedWith_ = next.edits;
@@ -60,7 +61,7 @@ bool Session::takeTexts(ViewState next) {
     scene = std::make_shared<const Scene>(loadScene(options_.scene, options_.sceneLoad));
     if (scene->hash == scene_->hash) scene = scene_;
     edited = editedScene(scene, next.edits);
-    // The camera that `view` and `render` begin with, where none is named.
+    // The default camera of `view` and `render`.
     const std::vector<Camera>& cameras = scene->cameras;
     if (std::ranges::find(cameras, next.camera, &Camera::name) == cameras.end()) {
       said.push_back(fmt::format("the text no longer has the camera '{}': its first, '{}', takes its place",

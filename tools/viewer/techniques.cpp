@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of a technique's shaders, in the tree that its library was built in; empty where that is not at
-/// hand.
+/// The folder of a technique's shaders in the source tree that its library was built in; empty if that is not
+/// available.
 fs::path shadersOf(const std::string& technique, const fs::path& library) {
   if (library.empty()) return {};
   const auto folder = programData(fs::path("shaders") / technique, library);
@@ -93,7 +93,7 @@ void LiveTechniques::stage(const std::string& technique, const fs::path& pack) {
   const fs::path library = libraryOf(technique);
   fs::copy_file(library, folder / library.filename());
   if (fs::exists(pack)) fs::copy_file(pack, folder / (technique + ".shaderpack"));
-  // The one that was staged before is as good as gone.
+  // Replaces the folder that was staged before.
   fs::path& last = staged_[technique];
   std::erase(directories_, last);
   last = folder;
@@ -103,7 +103,7 @@ void LiveTechniques::stage(const std::string& technique, const fs::path& pack) {
 
 bool LiveTechniques::dropLost() {
   if (staged_.empty() || folder_.isSound()) return false;
-  // Whoever took the name may have put libraries there.
+  // Another user may have put libraries into a folder of the same name.
   for (const auto& [technique, folder] : staged_) {
     std::erase(directories_, folder);
     errors_[technique] = fmt::format(
@@ -118,7 +118,7 @@ bool LiveTechniques::dropLost() {
 void LiveTechniques::compile(const std::string& technique) {
   const fs::path source = shadersOf(technique, libraryOf(technique));
   const auto common = programData("shaders");
-  // What the build has compiled need not be compiled again.
+  // Shares the build's cache of compiled shaders.
   const fs::path built = libraryOf(technique).parent_path().parent_path().parent_path() / "shadercache";
   const fs::path cache = fs::is_directory(built) ? built : cacheDirectory() / "viewer_shaders";
   const fs::path folder = folder_.path() / "compiled";
@@ -142,10 +142,10 @@ void LiveTechniques::changed(const std::string& technique, bool shaders) {
 
 bool LiveTechniques::update() {
   bool news = dropLost();
-  std::map<std::string, bool> which;  // whether shaders alone
+  std::map<std::string, bool> which;  // true: only shaders changed
   for (const fs::path& file : watch_.changed()) {
     const auto& [technique, shader] = files_.at(file);
-    // What all techniques include belongs to each of them.
+    // A change to shared shaders concerns every technique.
     const fs::path below = file.lexically_relative(shadersOf(technique, libraryOf(technique)).parent_path());
     const bool shared =
         shader && !below.empty() && (*below.begin() == "common" || *below.begin() == "toolkit");
@@ -175,7 +175,7 @@ bool LiveTechniques::update() {
     waiting_.erase(waiting_.begin());
     try {
       compile(technique);
-    } catch (const std::exception& error) {  // of a folder that cannot be made
+    } catch (const std::exception& error) {  // such as a folder that cannot be made
       errors_[technique] = error.what();
       news = true;
     }

@@ -1,6 +1,6 @@
-// Techniques that are changed while they are shown: libraries and shader packs are watched, shaders compiled
-// anew in the background. What is loaded stays as it is; a changed technique is opened beside it from a
-// folder of its own.
+// Reloads techniques that change while they are shown. It watches libraries and shader packs, and compiles
+// changed shaders in the background. Loaded libraries stay loaded; a changed technique is opened in addition,
+// from a folder of its own.
 #pragma once
 
 #include <filesystem>
@@ -21,12 +21,12 @@ struct CompileWish {
 };
 struct Compiled {
   CompileWish wish;
-  std::string error;  ///< the compiler's words; empty: the pack is there
+  std::string error;  ///< the compiler's message; empty: the pack was written
 };
 
 class LiveTechniques {
  public:
-  /// `directories`: where techniques are sought. `wake` is called when a compilation has ended.
+  /// `directories`: the folders with technique libraries. `wake` is called when a compilation has ended.
   LiveTechniques(std::vector<std::filesystem::path> directories, std::function<void()> wake);
   ~LiveTechniques();
   LiveTechniques(const LiveTechniques&) = delete;
@@ -36,24 +36,24 @@ class LiveTechniques {
   void use(const std::set<std::string>& techniques);
   /// The directories, those of changed techniques first.
   const std::vector<std::filesystem::path>& directories() const { return directories_; }
-  /// Looks at the files and at what was compiled. Whether directories() changed or a message did.
+  /// Checks the files and the compiler. Returns whether directories() or errors() changed.
   bool update();
-  /// As if all files had changed.
+  /// Treats all files as changed.
   void reload();
-  /// What the compiler found wrong, by technique; goes away when it is mended.
+  /// The compiler's errors by technique; each is removed when the shader compiles.
   const std::map<std::string, std::string>& errors() const { return errors_; }
   bool compiles() const { return compiler_.busy(); }
   void stop() { compiler_.stop(); }
-  /// Those of changed techniques, which are of this process alone.
+  /// Removes the staged files of changed techniques, which only this process uses.
   void removeFiles() { folder_.remove(); }
 
  private:
   std::filesystem::path libraryOf(const std::string& technique) const;
-  /// A new folder with the technique's library and a pack, in front of the others.
+  /// Adds a folder with the technique's library and a pack in front of the other directories.
   void stage(const std::string& technique, const std::filesystem::path& pack);
   void compile(const std::string& technique);
   void changed(const std::string& technique, bool shaders);
-  /// Whether staged techniques had to be given up, because their folder is no longer what was made.
+  /// Drops all staged techniques if their folder was removed or replaced. Returns whether it did.
   bool dropLost();
 
   std::vector<std::filesystem::path> given_, directories_;

@@ -7,11 +7,11 @@
 
 namespace lumivox::viewer {
 
-/// A document without findings, to be changed: documents cannot be copied.
+/// A copy of a document, without findings, for changes: parsed again, since documents cannot be copied.
 dsl::Document parsedAgain(const dsl::Document& document);
-/// One statement or block as an item; DiagnosticsError when it is none.
+/// One statement or block as an item. Throws DiagnosticsError if the text is neither.
 dsl::Item itemOf(const std::string& statement);
-/// Gives a property other values, or adds it behind the others.
+/// Replaces the values of a property, or appends it if the block lacks it.
 void replaceProperty(dsl::Block& block, const dsl::Property& property);
 void replaceProperty(dsl::Block& block, const std::string& statement);
 

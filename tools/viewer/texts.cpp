@@ -1,4 +1,4 @@
-// Texts with what was changed in the window.
+// Pipeline texts with the changes of the window.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& va
       if (!item.property || item.property->word != "param" || item.property->values.size() < 2) continue;
       const auto value = values.find(item.property->values.front().text);
       if (value == values.end()) continue;
-      // A number in base units, which needs one where angles are.
+      // The number is in base units; only an angle requires its unit.
       std::string written = value->second.text();
       if (value->second.word.empty() && value->second.dimension == dsl::kAngle) written += " rad";
       item.property->values[1] = itemOf("value " + written).property->values.front();

@@ -1,4 +1,4 @@
-// What other programs of Lumivox do with what is seen, in the background.
+// Runs other programs of Lumivox in the background, on the shown scene and pipeline.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace lumivox::viewer {
 
 struct ToolWish {
-  std::string done;                              ///< what is said in the end
+  std::string done;                              ///< the message on success
   std::vector<std::string> words;                ///< of the command line
   std::vector<std::filesystem::path> temporary;  ///< removed afterwards
 };
@@ -20,7 +20,7 @@ struct ToolResult {
 };
 using ToolWorker = LatestWorker<ToolWish, ToolResult>;
 
-/// Runs one program at a time, which ends with the worker.
+/// Runs one program at a time, and stops it when the worker ends.
 ToolWorker::Work makeToolWork();
 
 }  // namespace lumivox::viewer

@@ -8,7 +8,7 @@
 namespace lumivox::viewer {
 namespace {
 
-/// Nearer to straight up or down nobody turns, rad: there is no sideways any more.
+/// Least angle to straight up or down, rad: at the pole the direction to the side is undefined.
 constexpr double kNearestToPole = 0.01;
 
 /// `direction` turned to the right about `up`, then upwards.
@@ -72,7 +72,7 @@ Camera turned(Camera camera, double right, double up) {
 }
 
 Camera orbited(Camera camera, double right, double up) {
-  // To the right of what is looked at means that it turns to the left.
+  // Moving the eye to the right around its target turns the view to the left.
   camera.eye = camera.target - turnedDirection(camera.target - camera.eye, camera.up, -right, -up);
   return camera;
 }

@@ -1,4 +1,4 @@
-// What is looked at, and how: all that an undone action brings back.
+// The state of the view: the scene's and the pipelines' settings, and how they are shown.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@
 
 namespace lumivox::viewer {
 
-/// Of picture, second picture, reference and error, what is shown.
+/// Which of picture, second picture, reference and error map are shown, and how.
 enum class Layout { picture, reference, split, sideBySide, flicker, error };
-/// The words of scripts for these, in the order of the values.
+/// The words for these in scripts, in the order of the values.
 const std::vector<std::string>& layoutWords();
 const std::vector<std::string>& errorMapWords();
 const std::vector<std::string>& curveWords();
 
 struct ViewState {
-  std::string camera;          ///< of the scene, as it is edited
-  std::optional<Camera> free;  ///< in its place, once somebody has moved
+  std::string camera;          ///< name of a camera of the edited scene
+  std::optional<Camera> free;  ///< replaces `camera` once it was moved
   double time = 0.0, speed = 1.0;
-  double loop = 0.0;  ///< s, after which playing begins anew; 0: it goes on
+  double loop = 0.0;  ///< s, after which playing starts again; 0: never
   bool plays = false;
   int width = 0, height = 0;
   std::vector<Side> sides;  ///< one or two
   std::string output;
   std::optional<PortChoice> port;
-  double seeThrough = 0.0;  ///< share of the picture that is seen behind voxels
+  double seeThrough = 0.0;  ///< share of the picture that shows through voxels
   Layout layout = Layout::picture;
   ErrorMap errorMap = ErrorMap::relative;
   double split = 0.5;
-  std::optional<double> exposure;  ///< EV; otherwise that of the picture
+  std::optional<double> exposure;  ///< EV; nothing: from the picture
   Curve curve = Curve::filmic;
   bool keepEverything = false, timesPasses = true, countsWork = false, traces = true;
   int samples = 1024;
@@ -44,11 +44,11 @@ struct ViewState {
   SceneEdits edits;
 };
 
-/// The camera that it looks through. Of a camera with keys, where it is at the time.
+/// The camera of the view; one with keys is placed at the view's time.
 Camera cameraOf(const ViewState& state, const Scene& scene);
 
-/// A free camera that is moved right, up and forward by metres; turned about its eye, or about its target, by
-/// radians to the right and up, never over the pole; nearer to its target by a factor.
+/// Changes of a free camera: moved right, up and forward by metres; turned about its eye or about its target,
+/// right and up by radians, never over the pole; brought nearer to its target by a factor.
 Camera moved(Camera camera, const glm::dvec3& by);
 Camera turned(Camera camera, double right, double up);
 Camera orbited(Camera camera, double right, double up);

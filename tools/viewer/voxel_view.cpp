@@ -24,7 +24,7 @@ const PortContents::Field& fieldNamed(const PortContents& contents, const std::s
                           fmt::join(names, ", ")));
 }
 
-/// The field Y00 of a port whose harmonics share their textures, component by component.
+/// The field Y00 of a port whose textures hold one harmonic in each component.
 const PortContents::Field& harmonicsOf(const PortContents& contents, int level) {
   const PortContents::Field& first = fieldNamed(contents, kHarmonics[0], level);
   for (std::size_t k = 0; k < kHarmonics.size(); ++k) {
@@ -58,7 +58,7 @@ VoxelPicture VoxelView::draw(const PortContents& contents, const std::string& na
                              const CameraView& camera) {
   const bool lobes = name == kLobes;
   const PortContents::Field& field = lobes ? harmonicsOf(contents, level) : fieldNamed(contents, name, level);
-  shaders_.device().barrier();  // what passes wrote is read
+  shaders_.device().barrier();  // the draw reads what passes wrote
   const VoxelCanvas canvas(shaders_);
   const VoxelField voxels(canvas, field);
   const ImageBuffer seen = imageOf(*firstVoxels(canvas, camera, voxels, {.above = above}, lobes), 4);

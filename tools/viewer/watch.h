@@ -1,4 +1,4 @@
-// Files that somebody may change while they are shown.
+// Watches files for changes.
 #pragma once
 
 #include <sys/types.h>
@@ -11,21 +11,21 @@
 
 namespace lumivox::viewer {
 
-/// Compares what the file system says of a file when asked: works on every file system. A file that is
-/// replaced is seen by its number, since a kernel's clock stands still for milliseconds at a time, and a new
-/// file may be as long as the old one.
+/// Compares each file's status when asked, which works on every file system. A replaced file is recognised by
+/// its inode number: the kernel's timestamps advance only every few milliseconds, and the new file may have
+/// the same size.
 class Watch {
  public:
-  /// From now on these files, as they are now where they are new to the watch.
+  /// Watches these files from now on; changes of a new one count from this call.
   void set(const std::set<std::filesystem::path>& files);
-  /// Those that changed, came or went since the last call.
+  /// The files that were changed, created or removed since the last call.
   std::vector<std::filesystem::path> changed();
 
  private:
   struct Stamp {
     bool there = false;
     std::int64_t modified = 0;  // nanoseconds
-    std::int64_t changed = 0;   // of the file or of what stands about it, nanoseconds
+    std::int64_t changed = 0;   // of the content or the inode, nanoseconds
     std::uintmax_t size = 0;
     dev_t device = 0;
     ino_t number = 0;

@@ -20,8 +20,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr float kLetterPixels = 13.0f;  // at a scale of 1, as the font was drawn
 constexpr float kSmallestScale = 0.25f, kLargestScale = 8.0f;
-constexpr double kLongestStep = 0.1;     // s that somebody walks in a frame, however long it took
-constexpr double kWatchInterval = 0.25;  // s between looks at the files while nothing happens
+constexpr double kLongestStep = 0.1;     // s, the most that movement advances in one frame
+constexpr double kWatchInterval = 0.25;  // s between checks of the files while the window is idle
 
 std::string& lastGlfwError() {
   static std::string text;
@@ -55,14 +55,14 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // readLayout() and writeLayout() keep what there is
+  io.IniFilename = nullptr;  // readLayout() and writeLayout() store the layout instead
   io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplGlfw_InitForOpenGL(s.window, true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
   float scale = 1.0f, scaleY = 1.0f;
   glfwGetWindowContentScale(s.window, &scale, &scaleY);
   s.rescale(scale);
-  // Another monitor, or the same with another density.
+  // Called for another monitor, or another density of the same one.
   glfwSetWindowContentScaleCallback(s.window, [](GLFWwindow* window, float x, float) {
     static_cast<State*>(glfwGetWindowUserPointer(window))->rescale(x);
   });
@@ -81,8 +81,8 @@ Window::~Window() {
   glfwTerminate();
 }
 
-/// Sets `touched` whenever hands or the display do something. Before ImGui listens, which calls those that it
-/// finds.
+/// Sets `touched` on every event of input or display. Call it before ImGui installs its callbacks, which call
+/// these.
 void Window::State::listen() {
   glfwSetWindowUserPointer(window, this);
   static const auto touch = [](GLFWwindow* of) {
@@ -102,7 +102,7 @@ void Window::State::listen() {
 
 void Window::State::rescale(float to) {
   scale = std::clamp(to, kSmallestScale, kLargestScale);
-  // Whole pixels: letters stay sharp.
+  // Whole pixels keep the letters sharp.
   ImFontConfig font;
   font.SizePixels = std::round(kLetterPixels * scale);
   ImGuiIO& io = ImGui::GetIO();
@@ -121,7 +121,7 @@ void Window::State::minimise(bool away) {
     glfwIconifyWindow(window);
   else
     glfwRestoreWindow(window);
-  minimised = away;  // also where no window manager tells
+  minimised = away;  // without a window manager no event would set it
   soon = 4;
 }
 
@@ -177,7 +177,7 @@ void Window::State::drawFrame(double seconds) {
     walk(seconds);
     look(seconds);
     for (const KeyStatement& one : keyStatements())
-      // The space bar presses the control that has the keyboard.
+      // With keyboard navigation, the space bar presses the focused control instead.
       if (ImGui::IsKeyPressed(one.key, false) && io.KeyCtrl == one.control &&
           (one.key != GLFW_KEY_SPACE || !io.NavVisible))
         key(one);
@@ -188,7 +188,7 @@ void Window::State::drawFrame(double seconds) {
   if (showsPanels || panels.empty()) panels = panelsOf(*session);
   draw();
   ImGui::Render();
-  // Of a window that was put away there is nothing to be seen.
+  // A minimised window shows nothing.
   if (width == 0 || height == 0 || minimised) return;
   glViewport(0, 0, width, height);
   glClearColor(0.05f, 0.05f, 0.05f, 1.0f);
@@ -197,8 +197,8 @@ void Window::State::drawFrame(double seconds) {
   glfwSwapBuffers(window);
 }
 
-/// Whether what is seen has changed. What goes wrong there ends a script, but never a window with somebody's
-/// edits in it.
+/// Returns whether the picture changed. An exception ends a script, but never a window, which may have
+/// unsaved edits.
 bool Window::State::stepSession(double seconds, bool scripted) {
   try {
     return session->step(seconds);
@@ -237,11 +237,11 @@ void Window::run(Session& session, std::vector<Action> script) {
       s.soon = std::max(s.soon, 1);
     }
     if (!s.advanceScript() && scripted && s.done == s.script.size() && !s.busyWithHands() && s.soon == 0) {
-      // The window stays open behind a script that does not close it.
+      // The window stays open after a script that does not close it.
       s.script.clear();
       s.done = 0;
     }
-    // Nothing is drawn where nothing has happened: the panels would look as they do.
+    // Without an event the window would look the same, so it is not drawn.
     if (s.soon == 0 && !s.touched && !s.busyWithHands() && s.script.empty()) continue;
     s.touched = false;
     const ImGuiIO& io = ImGui::GetIO();

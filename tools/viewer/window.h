@@ -1,5 +1,5 @@
-// The window: GLFW and Dear ImGui. It draws the session's picture and panels, and turns what hands do into
-// the statements of scripts.
+// The window: GLFW and Dear ImGui. It draws the session's picture and panels, and converts input to the
+// statements of scripts.
 #pragma once
 
 #include <filesystem>
@@ -16,26 +16,26 @@ namespace lumivox::viewer {
 struct WindowOptions {
   int width = 1280, height = 800;
   double fpsLimit = 60.0;
-  /// Where the layout of this user is kept, a text of statements; empty: nowhere.
+  /// The file of this user's layout, a text of statements; empty: the layout is not stored.
   std::filesystem::path layoutFile;
-  bool restoresSize = true;  ///< that of the layout; else width and height
+  bool restoresSize = true;  ///< from the layout; else width and height
   std::string title = "Lumivox";
-  std::function<bool()> ends;  ///< asked again and again: whether to close; empty: never
+  std::function<bool()> ends;  ///< polled: whether to close; empty: never
 };
 
 class Window {
  public:
-  /// Opens it. AbsentError when there is no display or no OpenGL 4.5. It must be the process's only one, on
-  /// the main thread.
+  /// Opens the window: at most one per process, on the main thread. AbsentError if there is no display or no
+  /// OpenGL 4.5.
   explicit Window(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Wakes run() up, from any thread.
+  /// Wakes run(). May be called from any thread.
   static void wake();
-  /// Until it is closed, or the script's statements are done and one of them closes it. Error: a statement of
-  /// the script went wrong; it names its place.
+  /// Runs until the user or a statement of the script closes the window. Error, with its place, if a
+  /// statement of the script fails.
   void run(Session& session, std::vector<Action> script);
 
  private:

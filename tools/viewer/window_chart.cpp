@@ -1,4 +1,4 @@
-// The chart of what was tried: error against time.
+// The chart of tried settings: error against time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr ImU32 kLine = IM_COL32(128, 128, 128, 255), kGrid = IM_COL32(64, 64, 64, 255),
                 kText = IM_COL32(200, 200, 200, 255);
 
-/// Logarithmic: equal factors are equal ways.
+/// A logarithmic axis.
 struct Axis {
   double low = 1e300, high = 0.0, least = 0.0;
   double seen(double value) const { return std::max(value, least); }
@@ -21,7 +21,7 @@ struct Axis {
     low = std::min(low, seen(value));
     high = std::max(high, seen(value));
   }
-  /// 0..1
+  /// Position along the axis, 0..1.
   float at(double value) const {
     return static_cast<float>(std::log(seen(value) / low) / std::log(high / low));
   }
@@ -45,7 +45,7 @@ void Window::State::drawChart(const Row& row, const ImVec2& corner, float width)
     return ImVec2(low.x + horizontal.at(x) * (high.x - low.x), high.y - vertical.at(y) * height);
   };
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  float lowest = high.y + line;  // above which no number stands beside the chart yet
+  float lowest = high.y + line;  // top of the last number beside the chart
   for (const double number : errors) {
     const float y = placeOf(horizontal.low, number).y;
     list->AddLine(ImVec2(low.x, y), ImVec2(high.x, y), kGrid);
@@ -55,7 +55,7 @@ void Window::State::drawChart(const Row& row, const ImVec2& corner, float width)
     list->AddText(ImVec2(low.x - gap - ImGui::CalcTextSize(word.c_str()).x, y - 0.5f * line), kText,
                   word.c_str());
   }
-  float free = corner.x;  // from where on no number stands below the chart
+  float free = corner.x;  // right end of the last number below the chart
   for (const double number : roundNumbers(horizontal.low, horizontal.high)) {
     const float x = placeOf(number, vertical.low).x;
     list->AddLine(ImVec2(x, low.y), ImVec2(x, high.y), kGrid);

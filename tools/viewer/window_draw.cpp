@@ -1,4 +1,4 @@
-// What the window shows, and what hands do to it.
+// Draws the window's contents, and handles the mouse.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace lumivox::viewer {
 namespace {
 
 constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
-constexpr float kControlShare = 0.42f;   // of the width; label and ways back need the rest
-constexpr double kDragShare = 0.01;      // of the largest of three numbers, for a pixel
+constexpr float kControlShare = 0.42f;   // of the width; label and resets need the rest
+constexpr double kDragShare = 0.01;      // of the largest of three numbers, per pixel
 constexpr double kTurnPerPixel = 0.005;  // rad
 constexpr double kZoomPerNotch = 0.9;
 
@@ -106,11 +106,11 @@ void Window::State::changeBy(const std::string& control, const std::string& stat
   session->joinChanges(moves == control);
   act(statements);
   session->joinChanges(false);
-  // What the mouse goes on moving is one change.
+  // A drag of the mouse is one change.
   moves = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? control : std::string();
 }
 
-/// The two small buttons in front of a number: which was pressed, -1 or 1.
+/// Draws the two small buttons in front of a number. Returns -1 or 1 for the pressed one, else 0.
 int Window::State::drawSteps(const std::string& name) {
   int pressed = 0;
   if (ImGui::SmallButton("-")) pressed = -1;
@@ -160,7 +160,7 @@ void Window::State::drawTriple(const Row& row, const std::string& name) {
   if (ImGui::IsItemEdited()) change(values);
 }
 
-/// Behind a control, what brings it back.
+/// Draws the reset buttons behind a control.
 void Window::State::drawResets(const Row& row, const std::string& name) {
   for (const Row::Reset& reset : row.resets) {
     ImGui::SameLine();

@@ -1,4 +1,4 @@
-// What keys do: each is a statement of a script, or turns something over.
+// Key bindings: each key performs a statement of a script or toggles something.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ void Window::State::act(const std::string& statements) {
   try {
     for (const Action& action : session->perform(statements)) doInWindow(action);
   } catch (const std::exception& error) {
-    session->say(error.what(), true);  // as of what the session does itself
+    session->say(error.what(), true);  // as the session reports its own errors
   }
   soon = 3;
 }

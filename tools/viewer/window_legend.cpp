@@ -1,4 +1,4 @@
-// What colours stand for, below the pictures.
+// Draws the legends of the colours below the pictures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ constexpr float kRampHeight = 14.0f, kRampWidth = 320.0f, kTextHeight = 22.0f;  
 
 }  // namespace
 
-/// Of all legends that have a ramp.
+/// The height of all legends that have a ramp.
 float Window::State::legendHeight() const {
   float height = 0.0f;
   for (const Legend& legend : session->picture().legends)
@@ -20,7 +20,7 @@ float Window::State::legendHeight() const {
   return height;
 }
 
-/// One below the other; the last ends at the bottom.
+/// Draws the legends one below the other, the last at the bottom.
 void Window::State::drawLegends(const ImVec2& bottom, float width) const {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   ImVec2 corner(bottom.x, bottom.y - legendHeight());

@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLongestWait = 60.0;  // s, of a script's `wait`
-constexpr int kFramesOfPress = 1;      // more of slow ones would count as keys that repeat
+constexpr int kFramesOfPress = 1;      // more frames, if slow, would repeat the key
 
 }  // namespace
 
@@ -77,7 +77,7 @@ bool Window::State::doInWindow(const Action& action) {
     }
     const Rectangle& at = found->second;
     click = {ImVec2(0.5f * (at.low.x + at.high.x), 0.5f * (at.low.y + at.high.y)), 0};
-    // A box's label belongs to it, its middle may not.
+    // The rectangle of a check box includes its label, so its middle may miss the box.
     click->at.x = std::min(click->at.x, at.low.x + 10.0f * scale);
   } else if (word == "key") {
     for (const KeyStatement& one : keyStatements())
@@ -131,14 +131,14 @@ void Window::State::randomActions(int count) {
   for (int i = 0; i < count; ++i) {
     panels = panelsOf(*session);
     const Panel& panel = panels[random() % panels.size()];
-    if (panel.name == "keep" || panel.rows.empty()) continue;  // nothing is written
+    if (panel.name == "keep" || panel.rows.empty()) continue;  // writes no files
     session->say({}, false);
     const Row& row = panel.rows[random() % panel.rows.size()];
     std::string statement = row.statement;
     if (row.kind == Row::Kind::choice && !row.choices.empty())
       statement = filledIn(statement, choiceValue(row.choices[random() % row.choices.size()]));
     if (row.kind == Row::Kind::toggle) statement = filledIn(statement, random() % 2 == 0 ? "on" : "off");
-    // Small values: a script of many is not to wait for the largest grid.
+    // Small values, so that a long script does not wait for huge grids.
     const auto value = [&] {
       const double share = static_cast<double>(random() % 1000) / 999.0;
       return row.low + share * (std::min(row.high, row.low + 64.0) - row.low);
@@ -150,7 +150,7 @@ void Window::State::randomActions(int count) {
     if (!row.resets.empty() && random() % 4 == 0)
       statement = row.resets[random() % row.resets.size()].statement;
     if (!statement.empty()) act(statement);
-    // A control may ask for what is refused with a sentence: a surface that reflects more than it receives.
+    // A control may ask for something that is refused, such as a surface that reflects more than it receives.
     if (session->messageIsError()) ++refused;
     session->step(0.01);
   }
@@ -179,7 +179,7 @@ void Window::State::shoot(const std::filesystem::path& file) {
   writePng(file, pixels, {0.0, Tone::linear});
 }
 
-/// Does what it can without waiting; whether there is something left.
+/// Performs statements until one must wait. Returns whether any is left.
 bool Window::State::advanceScript() {
   while (done < script.size() && !busyWithHands() && soon == 0) {
     const Action& action = script[done];
@@ -193,7 +193,7 @@ bool Window::State::advanceScript() {
       if (!waitIsOver(action)) return true;
       waits = false;
     } else {
-      session->say(session->message(), false);  // so that an error is this statement's
+      session->say(session->message(), false);  // clears the error flag
       try {
         if (!session->perform(action)) doInWindow(action);
       } catch (const std::exception& error) {

@@ -1,8 +1,8 @@
-// The inside of the window, which its sources share.
+// The internal state of the window, shared by its sources.
 #pragma once
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL.
+// After epoxy, which declares OpenGL.
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -14,7 +14,7 @@
 
 namespace lumivox::viewer {
 
-/// A picture on the screen's side.
+/// A picture in a texture of the window's OpenGL context.
 class ScreenTexture {
  public:
   ~ScreenTexture() { glDeleteTextures(1, &name_); }
@@ -48,9 +48,9 @@ struct KeyStatement {
   bool control;
   const char *name, *statement, *meaning;
 };
-/// What keys do, beside those that walk.
+/// The statements of keys, except the movement keys.
 const std::vector<KeyStatement>& keyStatements();
-/// Keys that scripts may press beside those: what walks, turns and moves in panels.
+/// The other keys that scripts may press: those that move, turn and navigate in panels.
 const std::map<std::string, int>& heldKeys();
 
 struct Rectangle {
@@ -61,36 +61,36 @@ struct Window::State {
   WindowOptions options;
   GLFWwindow* window = nullptr;
   float scale = 1.0f;
-  bool touched = true;  ///< something came from hands or the display since the last drawing
+  bool touched = true;  ///< an input or display event came since the last drawing
   std::unique_ptr<ScreenTexture> texture;
   Session* session = nullptr;
   std::vector<Panel> panels;
   std::string openPanel = "look", wantedPanel;
-  std::string moves;  ///< the control that the mouse moves
+  std::string moves;  ///< the control that the mouse drags
   bool showsHelp = false, showsPanels = true;
   bool minimised = false, picturesKeyboard = false;  ///< whether arrows turn the view
   float panelWidth = 420.0f;                         ///< pixels at a scale of 1
-  std::string focus;                          ///< the part that is given the keyboard in the next frame
-  std::string layout;                         ///< as it was read or written last
-  std::map<std::string, Rectangle> controls;  ///< of this frame, "panel/row"
-  Rectangle image;                            ///< of the picture on the screen
+  std::string focus;                                 ///< the part that gets the keyboard in the next frame
+  std::string layout;                                ///< as last read or written
+  std::map<std::string, Rectangle> controls;         ///< of this frame, by "panel/row"
+  Rectangle image;                                   ///< the picture in the window
 
   std::vector<Action> script;
   std::size_t done = 0;
   std::chrono::steady_clock::time_point waitsSince;
   bool waits = false;
-  /// A click of a script takes three frames: there, down, up.
+  /// A click by a script takes three frames: move, press, release.
   struct Click {
     ImVec2 at;
     int frame = 0;
   };
   std::optional<Click> click;
-  /// A key that a script presses, for some frames.
+  /// A key that a script presses for some frames.
   struct Press {
     int key = 0, frame = 0;
   };
   std::optional<Press> press;
-  int soon = 3;  ///< frames that are drawn whatever happens: ImGui needs some to settle
+  int soon = 3;  ///< frames to draw without any event: ImGui needs some to settle
 
   void act(const std::string& statements);
   void key(const KeyStatement& key);

@@ -1,4 +1,4 @@
-// Bars of times.
+// Draws bars of times.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace lumivox::viewer {
 namespace {
 
-/// Of the passes one after the other: each as far from those before as can be.
+/// The colour of a pass. Successive hues are as far as possible from the earlier ones.
 ImU32 colourOf(std::size_t index) {
   const float turn = static_cast<float>(index) * 0.618f;
   return ImColor::HSV(turn - std::floor(turn), 0.6f, 0.8f);

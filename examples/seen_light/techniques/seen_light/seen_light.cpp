@@ -1,4 +1,4 @@
-// What visible surfaces reflect of the light in a grid: a pass that reads a kind of port of the framework.
+// The light of a grid that visible surfaces reflect: a pass that reads one of the framework's port kinds.
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/sh_grid.h"

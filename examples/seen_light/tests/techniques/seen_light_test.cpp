@@ -1,4 +1,4 @@
-// Light that is known, in a grid that the test makes; and light that the technique refuses.
+// Known light in a grid that the test makes, and a grid that the technique refuses.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,7 @@ Scene floorFromAbove() {
   return builder.scene;
 }
 
-/// The same coefficients in all voxels of [-2, 2]^3, in the unit 1/2.
+/// A grid over [-2, 2]^3 with the same coefficients in all voxels, in the unit 1/2.
 ShGrid gridOf(const glm::vec4& coefficients) {
   ShGrid grid;
   grid.quantity = ShGrid::Quantity::radiance;
@@ -43,7 +43,7 @@ ShGrid gridOf(const glm::vec4& coefficients) {
   return grid;
 }
 
-/// What the floor reflects in the first pixel.
+/// The radiance that the floor reflects in the first pixel.
 float reflected(const ShGrid& light) {
   const Scene scene = floorFromAbove();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
@@ -62,7 +62,7 @@ TEST_CASE("radiance L from all sides makes a Lambert surface reflect albedo time
   // L = Y00 (1 / (2 sqrt pi)) everywhere.
   const float radiance = 3.0f, y00 = radiance * 2.0f / std::numbers::inv_sqrtpi_v<float>;
   CHECK(reflected(gridOf({y00, 0, 0, 0})) == Approx(0.25 * radiance));
-  // Light that grows towards -y alone leaves the floor, which looks up, less than nothing.
+  // A negative Y1-1 band alone gives a floor that faces up a negative irradiance.
   CHECK(reflected(gridOf({0, -1, 0, 0})) == 0.0f);
 }
 
@@ -85,6 +85,7 @@ TEST_CASE("the pipeline lights a floor below a bright sky by about its albedo") 
   PipelineExecutor executor(device(), techniques(), scene, pipeline, options);
   const FrameResult frame = executor.render(0.0);
   CHECK(frame.readsFindings == std::vector<std::string>());
-  // The sky fills the upper half: in two bands, 1/2 + 3/4 cos, the floor sees it whole. Rays are few.
+  // The sky fills the upper half: its two bands are 1/2 + 3/4 cos, whose irradiance at the floor is that of
+  // the whole sky. The tolerance allows for few rays.
   CHECK(frame.outputs.at("indirect_diffuse").at(2, 2, 0) == Approx(0.25 * 2.0).epsilon(0.1));
 }

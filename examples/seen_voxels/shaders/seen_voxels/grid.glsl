@@ -1,4 +1,4 @@
-// The voxel that holds a point.
+// The voxel that contains a point.
 layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m, relative to the snapshot's origin
   float voxelSize;  // m

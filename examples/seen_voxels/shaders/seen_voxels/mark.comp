@@ -1,5 +1,6 @@
 #version 450
-// Every pixel that sees a surface marks the voxel which holds it. All write the same value, so their order does not count.
+// Every pixel that sees a surface marks the voxel that contains it. All write the same value, so their order does not
+// matter.
 #include "grid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,5 +1,5 @@
 #version 450
-// Whether the surface of a pixel lies in a voxel that is marked.
+// Shows whether a pixel's surface lies in a marked voxel.
 #include "grid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,4 +1,4 @@
-// The voxels that the camera sees, in a port of their own kind: a pass that makes it, and one that reads it.
+// The voxels that the camera sees, in a port kind of their own: one pass fills it and one reads it.
 #include "seen_voxels.h"
 
 #include "lumivox/plugin/technique.h"

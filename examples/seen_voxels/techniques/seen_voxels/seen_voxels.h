@@ -1,4 +1,4 @@
-// A kind of port that the framework does not have.
+// A port kind that the technique adds to the framework's.
 #pragma once
 
 #include "lumivox/pipeline/port.h"

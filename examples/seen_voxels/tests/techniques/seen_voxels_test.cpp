@@ -1,4 +1,4 @@
-// The voxels of what is seen: a floor from above.
+// The voxels that a camera sees of a floor from above.
 #include <catch2/catch.hpp>
 
 #include "lumivox/gpu/device.h"
@@ -17,7 +17,7 @@ TEST_CASE("every surface that is seen lies in a voxel that is marked, and nothin
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/seen_voxels.pipeline");
   PipelineExecutor executor(device, techniques, builder.scene, pipeline, {});
   const ImageBuffer shown = executor.render(0.0).outputs.at("shown");
-  // The floor is seen within atan(1 / 3) of the axis, which is 0.61 of the image's half height.
+  // The floor fills the image within atan(1 / 3) of the view axis, which is 0.61 of the image's half height.
   CHECK(shown.at(8, 8, 0) == 1.0f);
   CHECK(shown.at(4, 8, 0) == 1.0f);
   CHECK(shown.at(1, 8, 0) == 0.0f);
