@@ -3,7 +3,8 @@
 # uses, and the presets "debug" and "sanitize" compile each alone. Of techniques, which change most often, a change compiles a few files more.
 # lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
 # lumivox_compile_together(TARGET [COUNT]): several sources at a time, by default 8.
-# lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: commands, records, pages, plans.
+# lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: texts, graphs of passes, techniques (the device does
+# their work), commands, records, pages, plans. It takes a third of the compiler's time away.
 option(LUMIVOX_FAST_BUILD "Read the headers that many sources include once, and compile several sources at a time" ON)
 
 # From precompiled headers g++ 12 forgets which ones are the system's, and then tells of the strings of its own library what it is wrong about

@@ -17,11 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool isThere(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 /// The format of a folder, by the files in it.
 std::string formatOf(const fs::path& folder) {
   for (const char* name : {"associations.txt", "associate.txt", "associated.txt", "rgb.txt"})

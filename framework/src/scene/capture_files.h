@@ -78,6 +78,9 @@ class SensFile {
   CaptureListing listing_;
 };
 
+/// Whether a file or a folder is there.
+bool isThere(const std::filesystem::path& path);
+
 /// The lines of a text without comments (#), carriage returns and empty ones, with their numbers.
 struct TextLine {
   int number = 0;

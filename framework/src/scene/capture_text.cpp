@@ -15,6 +15,11 @@ namespace lumivox {
 
 namespace fs = std::filesystem;
 
+bool isThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
 std::vector<TextLine> linesOf(const fs::path& file) {
   const std::string text = readFile(file);
   std::vector<TextLine> lines;

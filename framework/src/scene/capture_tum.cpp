@@ -26,11 +26,6 @@ struct TimedPose {
   CapturePose pose;
 };
 
-bool isThere(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 double timeOf(const fs::path& file, const TextLine& line, std::size_t word) {
   const double time = numberOf(file, line, word);
   if (!std::isfinite(time)) refuseLine(file, line, "the time is not finite", "seconds");
