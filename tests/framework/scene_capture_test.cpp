@@ -17,8 +17,8 @@
 #include "support/support.h"
 
 using namespace lumivox;
-using lumivox::test::TemporaryDirectory;
 using lumivox::test::Tells;
+using lumivox::test::TemporaryDirectory;
 
 namespace {
 
@@ -30,7 +30,8 @@ WordImage depthImage(std::uint16_t first = 5000) {
 }
 ByteImage colourImage(int width = 4, int height = 3) {
   ByteImage image{width, height, 3, {}};
-  for (int i = 0; i < 3 * width * height; ++i) image.values.push_back(static_cast<unsigned char>(i * 7 % 256));
+  for (int i = 0; i < 3 * width * height; ++i)
+    image.values.push_back(static_cast<unsigned char>(i * 7 % 256));
   return image;
 }
 
@@ -55,8 +56,9 @@ struct CaptureFiles {
 
   Scene load(const std::string& capture = std::string("folder \"c\" ") + kPinhole,
              const std::string& camera = "capture c") const {
-    return loadSceneText(fmt::format("scene \"s\" {{ capture c {{ {} }}\n camera main {{ {} }} }}", capture, camera),
-                         directory.path() / "s.scene");
+    return loadSceneText(
+        fmt::format("scene \"s\" {{ capture c {{ {} }}\n camera main {{ {} }} }}", capture, camera),
+        directory.path() / "s.scene");
   }
   std::string refusal(const std::string& capture = std::string("folder \"c\" ") + kPinhole) const {
     try {
@@ -117,7 +119,8 @@ TEST_CASE("rays of a distorted camera arrive at the pixels that they were taken 
   // Tangential terms by hand: of ray (x, y) = (0.2, -0.1) with p1 = 0.01, p2 = 0.02 alone.
   camera.distortion = {0, 0, 0.01, 0.02, 0};
   const double x = 0.2, y = -0.1, r2 = x * x + y * y;
-  const glm::dvec2 expected(x + 2 * 0.01 * x * y + 0.02 * (r2 + 2 * x * x), y + 0.01 * (r2 + 2 * y * y) + 2 * 0.02 * x * y);
+  const glm::dvec2 expected(x + 2 * 0.01 * x * y + 0.02 * (r2 + 2 * x * x),
+                            y + 0.01 * (r2 + 2 * y * y) + 2 * 0.02 * x * y);
   CHECK(glm::length(camera.project({x, y}) - (camera.focal * expected + camera.centre)) < 1e-9);
   // Beyond the turning point of the polynomial there is no ray.
   camera.distortion = {-1.0, 0, 0, 0, 0};
@@ -126,7 +129,8 @@ TEST_CASE("rays of a distorted camera arrive at the pixels that they were taken 
 
 TEST_CASE("a capture in the TUM layout gives depth in metres, linear radiance, poses and times") {
   const std::string pairs = GENERATE(
-      std::string(kPairs), std::string("1.0 depth/1.0.png 1.0 rgb/1.0.png\r\n# a comment\r\n1.1 depth/1.1.png 1.1 rgb/1.1.png"));
+      std::string(kPairs),
+      std::string("1.0 depth/1.0.png 1.0 rgb/1.0.png\r\n# a comment\r\n1.1 depth/1.1.png 1.1 rgb/1.1.png"));
   const CaptureFiles files = tum(pairs, kTwoPoses);
   const Scene scene = files.load(std::string("folder \"c\" exposure 2 ") + kPinhole);
   const Capture& capture = only(scene);
@@ -175,9 +179,10 @@ TEST_CASE("poses between two are their slerp, and frames without a pose within 5
 }
 
 TEST_CASE("frames are in the order of their times, each time once") {
-  const CaptureFiles files = tum("1.1 rgb/1.1.png 1.1 depth/1.1.png\n1.0 rgb/1.0.png 1.0 depth/1.0.png\n"
-                                 "1.1 rgb/1.0.png 1.1 depth/1.0.png\n",
-                                 kTwoPoses);
+  const CaptureFiles files =
+      tum("1.1 rgb/1.1.png 1.1 depth/1.1.png\n1.0 rgb/1.0.png 1.0 depth/1.0.png\n"
+          "1.1 rgb/1.0.png 1.1 depth/1.0.png\n",
+          kTwoPoses);
   const Scene scene = files.load();
   REQUIRE(only(scene).frames.size() == 2);
   CHECK(only(scene).frames[0].eye == glm::dvec3(1, 2, 3));
@@ -190,7 +195,8 @@ TEST_CASE("matrices and quaternions of one capture give the same bits") {
   CaptureFiles matrices, quaternions;
   std::string pairs;
   for (int i = 0; i < 20; ++i) {
-    const glm::dquat q = glm::normalize(glm::dquat(number(random), number(random), number(random), number(random)));
+    const glm::dquat q =
+        glm::normalize(glm::dquat(number(random), number(random), number(random), number(random)));
     const glm::dvec3 eye(number(random), number(random), number(random));
     matrices.image(fmt::format("c/frame-{:06}.color.png", i), colourImage());
     matrices.image(fmt::format("c/frame-{:06}.depth.png", i), depthImage());
@@ -199,18 +205,20 @@ TEST_CASE("matrices and quaternions of one capture give the same bits") {
     quaternions.image(fmt::format("c/depth/{}.png", i), depthImage());
     pairs += fmt::format("{} rgb/{}.png {} depth/{}.png\n", i, i, i, i);
     // Of another length and sign, which mean the same rotation.
-    poses += fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", i, eye.x, eye.y, eye.z,
-                         -0.6 * q.x, -0.6 * q.y, -0.6 * q.z, -0.6 * q.w);
+    poses += fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", i, eye.x, eye.y,
+                         eye.z, -0.6 * q.x, -0.6 * q.y, -0.6 * q.z, -0.6 * q.w);
   }
   quaternions.text("c/associations.txt", pairs);
   quaternions.text("c/groundtruth.txt", poses);
   quaternions.text("c/groundtruth.txt", poses);
-  const std::string block = std::string("folder \"c\" rate 1 translate 1 2 3 rotate 1 0 0 -90 deg ") + kPinhole;
+  const std::string block =
+      std::string("folder \"c\" rate 1 translate 1 2 3 rotate 1 0 0 -90 deg ") + kPinhole;
   const Scene a = matrices.load(block), b = quaternions.load(block);
   REQUIRE(only(a).frames.size() == 20);
   REQUIRE(only(b).frames.size() == 20);
   for (std::size_t i = 0; i < 20; ++i) {
-    const CaptureState x = captureStateOf(only(a), i, glm::dvec3(0)), y = captureStateOf(only(b), i, glm::dvec3(0));
+    const CaptureState x = captureStateOf(only(a), i, glm::dvec3(0)),
+                       y = captureStateOf(only(b), i, glm::dvec3(0));
     CHECK(x == y);
     CHECK(only(a).frames[i].time == only(b).frames[i].time);
   }
@@ -222,7 +230,8 @@ TEST_CASE("a Redwood trajectory numbers its frames from 1, and the camera has it
     files.image(fmt::format("c/color/{:05}.png", i), colourImage());
     files.image(fmt::format("c/depth/{:05}.png", i), depthImage(1000));
   }
-  const std::string identity = matrixText(glm::dquat(1, 0, 0, 0), {0, 0, 1}), moved = matrixText(glm::dquat(1, 0, 0, 0), {5, 0, 1});
+  const std::string identity = matrixText(glm::dquat(1, 0, 0, 0), {0, 0, 1}),
+                    moved = matrixText(glm::dquat(1, 0, 0, 0), {5, 0, 1});
   files.text("c/trajectory.log", "0 0 1\n" + identity + "2 2 3\n" + moved);
   const Scene scene = files.load("folder \"c\"");
   const Capture& capture = only(scene);
@@ -255,7 +264,8 @@ TEST_CASE("EXR images hold linear colour and Z in metres") {
   CHECK(std::isinf(capture.image(0)->saturation));
 }
 
-// ---- .sens -------------------------------------------------------------------------------------------------
+// ---- .sens
+// -------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -331,7 +341,8 @@ constexpr const char* kSens = "file \"room.sens\" rate 10";
 
 }  // namespace
 
-TEST_CASE("a .sens file gives each depth the colour where its point projects, and none where a nearer one does") {
+TEST_CASE(
+    "a .sens file gives each depth the colour where its point projects, and none where a nearer one does") {
   Sens made = sens();
   made.poses[1] = glm::dmat4(std::numeric_limits<double>::quiet_NaN());
   const CaptureFiles files = with(made.bytes());
@@ -343,7 +354,8 @@ TEST_CASE("a .sens file gives each depth the colour where its point projects, an
   CHECK(image->depth[5] == Approx(1.5));
   // Depth pixel (0, 0) has the ray (-1.5, -1) / 4, which the colour camera sees at (3.5 - 3, 2.5 - 2).
   const int column = 1, row = 1;
-  CHECK(image->colour[0] == Approx(srgbToLinear(static_cast<float>((row * 8 + column) * 3 * 7 % 256) / 255.0f)));
+  CHECK(image->colour[0] ==
+        Approx(srgbToLinear(static_cast<float>((row * 8 + column) * 3 * 7 % 256) / 255.0f)));
   // The colour camera far to the side: near points come before far ones, and most fall outside.
   made.colourPose[3] = {0.3, 0.0, 0.0, 1.0};
   made.depth.values = {1000, 1000, 1000, 1000, 1000, 1500, 3000, 1000, 1000, 1000, 1000, 1000};
@@ -379,13 +391,15 @@ TEST_CASE("the last frame of a .sens file that was cut off is left out") {
   CHECK(only(scene).frames.size() == 1);
 }
 
-// ---- what is refused ---------------------------------------------------------------------------------------
+// ---- what is refused
+// ---------------------------------------------------------------------------------------
 
 TEST_CASE("depth images of 8 bits, of other sizes or absent are refused with their file") {
   CaptureFiles files = tum(kPairs, kTwoPoses);
   files.image("c/depth/1.1.png", WordImage{2, 2, {1, 2, 3, 4}});
   const Scene scene = files.load();
-  CHECK_THAT(test::messageOf<Error>([&] { only(scene).image(1); }), Tells("'c'", "frame 1", "2 x 2", "4 x 3"));
+  CHECK_THAT(test::messageOf<Error>([&] { only(scene).image(1); }),
+             Tells("'c'", "frame 1", "2 x 2", "4 x 3"));
   files.image("c/depth/1.0.png", colourImage());
   CHECK_THAT(files.refusal(), Tells("1.0.png", "8 bits", "16 bits"));
   std::filesystem::remove(files.directory.path() / "c/depth/1.0.png");
@@ -412,7 +426,8 @@ TEST_CASE("a folder that is no capture, or one without poses, says what was expe
   CHECK_THAT(tum(kPairs, "1.0 0 x 0 0 0 0 1\n").refusal(), Tells("groundtruth.txt:1", "'x'"));
   CHECK_THAT(tum("1.0 a.png 1.0 b.png\n", kTwoPoses).refusal(), Tells("associations.txt:1", "depth"));
   CHECK_THAT(tum(kPairs, kTwoPoses).refusal("folder \"c\""), Tells("focal", "capture c"));
-  CHECK_THAT(tum(kPairs, kTwoPoses).refusal(std::string("folder \"c\" range 7..9 ") + kPinhole), Tells("7", "9", "0 to 1"));
+  CHECK_THAT(tum(kPairs, kTwoPoses).refusal(std::string("folder \"c\" range 7..9 ") + kPinhole),
+             Tells("7", "9", "0 to 1"));
 }
 
 TEST_CASE("the text of a capture is checked") {
@@ -425,13 +440,16 @@ TEST_CASE("the text of a capture is checked") {
   CHECK_THAT(files.refusal(std::string("folder \"c\" format sens ") + kPinhole), Tells("'sens'", "folder"));
   CHECK_THAT(files.refusal(std::string("folder \"d\" ") + kPinhole), Tells("'d'", "does not exist"));
   CHECK_THAT(files.refusal(std::string("files \"c/a.exr\" ") + kPinhole), Tells("####"));
-  CHECK_THAT(test::messageOf<Error>([&] { files.load(std::string("folder \"c\" ") + kPinhole, "capture d"); }),
-             Tells("unknown capture 'd'", "c"));
-  CHECK_THAT(test::messageOf<Error>([&] { files.load(std::string("folder \"c\" ") + kPinhole, "capture c eye 0 0 0"); }),
+  CHECK_THAT(
+      test::messageOf<Error>([&] { files.load(std::string("folder \"c\" ") + kPinhole, "capture d"); }),
+      Tells("unknown capture 'd'", "c"));
+  CHECK_THAT(test::messageOf<Error>(
+                 [&] { files.load(std::string("folder \"c\" ") + kPinhole, "capture c eye 0 0 0"); }),
              Tells("'eye'", "capture"));
 }
 
-// ---- in a scene --------------------------------------------------------------------------------------------
+// ---- in a scene
+// --------------------------------------------------------------------------------------------
 
 TEST_CASE("a camera stands where the capture's camera stood, and sees as high as its rows") {
   const CaptureFiles files = tum(kPairs, kTwoPoses);
@@ -452,14 +470,15 @@ TEST_CASE("a camera stands where the capture's camera stood, and sees as high as
 }
 
 TEST_CASE("a negative focal length along y mirrors the capture's left-handed world") {
-  const CaptureFiles files = tum(kPairs, "1.0 1 2 3 0.7071067811865476 0 0 0.7071067811865476\n1.1 1 2 3 0 0 0 1\n");
+  const CaptureFiles files =
+      tum(kPairs, "1.0 1 2 3 0.7071067811865476 0 0 0.7071067811865476\n1.1 1 2 3 0 0 0 1\n");
   const Scene plain = files.load(), mirrored = files.load("folder \"c\" focal 4 -4 centre 1.5 1");
   CHECK(only(mirrored).camera.focal == glm::dvec2(4));
   // A point of the left-handed camera and world, y up in both, mirrored: that is where ours finds it.
   const glm::dvec3 seen(0.3, 0.2, 2.0);
   const CaptureFrame &theirs = only(plain).frames[0], &ours = only(mirrored).frames[0];
   const glm::dvec3 mirror(1, -1, 1), expected = mirror * (theirs.rotation * seen + theirs.eye),
-                   found = ours.rotation * (mirror * seen) + ours.eye;
+                                     found = ours.rotation * (mirror * seen) + ours.eye;
   CHECK(glm::length(found - expected) < 1e-12);
 }
 
@@ -477,15 +496,18 @@ TEST_CASE("the hash of a scene changes with a pixel of a frame in the range, and
 
 TEST_CASE("a capture stands for a scene, which may hold no captures") {
   CaptureFiles files = tum(kPairs, kTwoPoses);
-  files.text("real.scene", "scene \"real\" { camera m { eye 0 0 1 target 0 0 0 } environment { radiance 3 } }");
+  files.text("real.scene",
+             "scene \"real\" { camera m { eye 0 0 1 target 0 0 0 } environment { radiance 3 } }");
   const std::string block = std::string("folder \"c\" stands_for \"real.scene\" ") + kPinhole;
   const Scene scene = files.load(block);
   REQUIRE(only(scene).realScene != nullptr);
   CHECK(only(scene).realScene->environment == glm::vec3(3.0f));
-  files.text("real.scene", std::string("scene \"real\" { camera m { eye 0 0 1 target 0 0 0 } capture c { folder \"c\" ") +
-                               kPinhole + " } }");
+  files.text("real.scene",
+             std::string("scene \"real\" { camera m { eye 0 0 1 target 0 0 0 } capture c { folder \"c\" ") +
+                 kPinhole + " } }");
   CHECK_THAT(files.refusal(block), Tells("capture within"));
-  CHECK_THAT(files.refusal(std::string("folder \"c\" stands_for \"none.scene\" ") + kPinhole), Tells("none.scene"));
+  CHECK_THAT(files.refusal(std::string("folder \"c\" stands_for \"none.scene\" ") + kPinhole),
+             Tells("none.scene"));
 }
 
 TEST_CASE("frames far from the world's origin keep the precision of their poses") {

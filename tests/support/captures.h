@@ -68,8 +68,8 @@ inline std::shared_ptr<Capture> captureOf(const CaptureCamera& camera, std::vect
   return capture;
 }
 
-/// A scene with the capture, seen by a camera in its place. Without a virtual triangle the origin is the eye of
-/// the first frame.
+/// A scene with the capture, seen by a camera in its place. Without a virtual triangle the origin is the eye
+/// of the first frame.
 inline Scene sceneWith(std::shared_ptr<const Capture> capture) {
   SceneBuilder builder;
   Camera camera;
@@ -81,8 +81,8 @@ inline Scene sceneWith(std::shared_ptr<const Capture> capture) {
   return builder.scene;
 }
 
-/// A plane through (0, 0, distance) of the camera's space, with its normal turned away from the axis by `slant`
-/// about y.
+/// A plane through (0, 0, distance) of the camera's space, with its normal turned away from the axis by
+/// `slant` about y.
 inline SeenAlong plane(double distance, double slant = 0.0, const glm::vec3& radiance = glm::vec3(1.0f)) {
   return [=](const glm::dvec2& ray) {
     // n (p - (0, 0, d)) = 0 with n = (sin, 0, -cos)
@@ -91,8 +91,10 @@ inline SeenAlong plane(double distance, double slant = 0.0, const glm::vec3& rad
   };
 }
 
-inline captured_frames::CapturedFrames read(const Scene& scene, const Settings& settings = {}, double time = 0.0) {
-  return LonePass("captured_frames.read", scene, settings, time).out<captured_frames::CapturedFrames>("frames");
+inline captured_frames::CapturedFrames read(const Scene& scene, const Settings& settings = {},
+                                            double time = 0.0) {
+  return LonePass("captured_frames.read", scene, settings, time)
+      .out<captured_frames::CapturedFrames>("frames");
 }
 
 /// A pixel of the map, as a light.
@@ -127,7 +129,8 @@ inline CapturedMap lightsIn(const Scene& scene, const Settings& settings = {}, c
                   .out<ReflectiveShadowMap>("map");
   map.width = map.value.flux->description().width;
   const std::vector<float> position = map.value.position->downloadFloats(0),
-                           normal = map.value.normal->downloadFloats(0), flux = map.value.flux->downloadFloats(0);
+                           normal = map.value.normal->downloadFloats(0),
+                           flux = map.value.flux->downloadFloats(0);
   for (std::size_t i = 0; i < position.size(); i += 4)
     map.pixels.push_back({{position[i], position[i + 1], position[i + 2]},
                           {normal[i], normal[i + 1], normal[i + 2]},

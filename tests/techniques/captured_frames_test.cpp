@@ -38,13 +38,15 @@ double areaSeen(const CaptureCamera& camera, double distance, double slant, int 
   for (int i = 0; i < kSteps; ++i) add(std::lerp(right, left, i / double{kSteps}), bottom);
   for (int i = 0; i < kSteps; ++i) add(left, std::lerp(bottom, top, i / double{kSteps}));
   glm::dvec3 sum(0.0);
-  for (std::size_t i = 0; i < border.size(); ++i) sum += glm::cross(border[i], border[(i + 1) % border.size()]);
+  for (std::size_t i = 0; i < border.size(); ++i)
+    sum += glm::cross(border[i], border[(i + 1) % border.size()]);
   return 0.5 * glm::length(sum);
 }
 
 }  // namespace
 
-TEST_CASE("areas of a seen plane sum to it within 1 %, face on and at a slant, through a distorting lens too") {
+TEST_CASE(
+    "areas of a seen plane sum to it within 1 %, face on and at a slant, through a distorting lens too") {
   const double degrees = GENERATE(0.0, 45.0, 75.0);
   const bool isDistorted = GENERATE(false, true);
   CAPTURE(degrees, isDistorted);
@@ -63,12 +65,15 @@ TEST_CASE("areas of a seen plane sum to it within 1 %, face on and at a slant, t
   }
 }
 
-TEST_CASE("a pixel's flux is that of a Lambert emitter of its colour, and twice the focal length sees a quarter") {
+TEST_CASE(
+    "a pixel's flux is that of a Lambert emitter of its colour, and twice the focal length sees a quarter") {
   const glm::vec3 radiance(2.0f, 1.0f, 0.5f);
   const CapturedMap wide = lightsIn(sceneWith(captureOf(smallCamera(), {plane(1.5, 0.0, radiance)})), kRaw),
-                    narrow = lightsIn(sceneWith(captureOf(smallCamera(60, 40, 100.0), {plane(1.5, 0.0, radiance)})), kRaw);
+                    narrow = lightsIn(
+                        sceneWith(captureOf(smallCamera(60, 40, 100.0), {plane(1.5, 0.0, radiance)})), kRaw);
   for (const PixelLight& light : wide.pixels)
-    for (int c = 0; c < 3; ++c) REQUIRE(light.flux[c] == Approx(kPi * radiance[c] * light.area).epsilon(1e-5));
+    for (int c = 0; c < 3; ++c)
+      REQUIRE(light.flux[c] == Approx(kPi * radiance[c] * light.area).epsilon(1e-5));
   CHECK(wide.flux() == Approx(4.0 * narrow.flux()).epsilon(1e-4));
 }
 
@@ -96,9 +101,7 @@ TEST_CASE("in a white furnace the eye receives pi L times the form factor of the
 TEST_CASE("holes, flying pixels and colours that are no radiance give no light") {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const CaptureCamera camera = smallCamera();
-  const auto pixelOf = [&](const glm::dvec2& ray) {
-    return glm::ivec2(glm::round(camera.project(ray)));
-  };
+  const auto pixelOf = [&](const glm::dvec2& ray) { return glm::ivec2(glm::round(camera.project(ray))); };
   const auto seen = [&](const glm::dvec2& ray) {
     SeenPixel pixel = plane(2.0)(ray);
     const glm::ivec2 at = pixelOf(ray);
@@ -131,7 +134,9 @@ TEST_CASE("a capture of one pixel, and one without any depth, are dark") {
 }
 
 TEST_CASE("colours at the end of the file's range are kept, dropped or scaled") {
-  const auto seen = [](const glm::dvec2& ray) { return SeenPixel{2.0, glm::vec3(ray.x < 0.0 ? 1.0f : 0.25f)}; };
+  const auto seen = [](const glm::dvec2& ray) {
+    return SeenPixel{2.0, glm::vec3(ray.x < 0.0 ? 1.0f : 0.25f)};
+  };
   const Scene scene = sceneWith(captureOf(smallCamera(), {seen}, {frameAt()}, 1.0f));
   const auto fluxWith = [&](const char* how) {
     return lightsIn(scene, {{"filter", 0}, {"saturated", how}, {"saturated_scale", 8}}).flux();
@@ -143,7 +148,8 @@ TEST_CASE("colours at the end of the file's range are kept, dropped or scaled") 
 
 TEST_CASE("two frames of the same view light like one") {
   const CaptureFrame first = frameAt(), second = frameAt(glm::dvec3(0), 1.0);
-  const Scene scene = sceneWith(captureOf(smallCamera(), {plane(2.0, 0.3), plane(2.0, 0.3)}, {first, second}));
+  const Scene scene =
+      sceneWith(captureOf(smallCamera(), {plane(2.0, 0.3), plane(2.0, 0.3)}, {first, second}));
   const double one = lightsIn(scene, {}, {{"frames", 1}}, 1.0).flux();
   const CapturedMap both = lightsIn(scene, {}, {{"frames", 2}}, 1.0);
   CHECK(both.value.layerCount == 2);
@@ -154,8 +160,8 @@ TEST_CASE("a frame from the side adds what the newer one does not see, and nothi
   // A plane from two places: together they see the union of both views.
   const CaptureCamera camera = smallCamera();
   const double aside = 0.8;  // of a view 2.4 m wide at 2 m
-  const Scene scene = sceneWith(captureOf(camera, {plane(2.0), plane(2.0)},
-                                          {frameAt({aside, 0, 0}), frameAt(glm::dvec3(0), 1.0)}));
+  const Scene scene = sceneWith(
+      captureOf(camera, {plane(2.0), plane(2.0)}, {frameAt({aside, 0, 0}), frameAt(glm::dvec3(0), 1.0)}));
   const double one = lightsIn(scene, kRaw, {{"frames", 1}}, 1.0).area(),
                both = lightsIn(scene, kRaw, {{"frames", 2}}, 1.0).area();
   CHECK(both == Approx(one * (1.0 + aside / 2.4)).epsilon(0.02));
@@ -170,7 +176,8 @@ TEST_CASE("a frame alone has the lights that it has in a sequence") {
       "}\n pass gather reflective_shadow_maps.gather { gbuffer gbuffer lights choose.lights }\n output indirect_diffuse "
       "gather.diffuse }",
       "p.pipeline");
-  PipelineExecutor sequence(device(), techniques(), scene, text, {}), alone(device(), techniques(), scene, text, {});
+  PipelineExecutor sequence(device(), techniques(), scene, text, {}),
+      alone(device(), techniques(), scene, text, {});
   for (PipelineExecutor* one : {&sequence, &alone}) one->keepOutput("lights", "map");
   for (const double time : {0.0, 1.0, 2.0}) sequence.render(time);
   alone.render(2.0);
@@ -214,8 +221,8 @@ TEST_CASE("the filter takes noise from depths, and keeps an edge of 10 cm at 2 m
   };
   const auto [rawNormals, rawDepth] = judged(0.0);
   const auto [normals, depth] = judged(2.0);
-  INFO("normals off by " << rawNormals << " rad without, " << normals << " with the filter; depths by " << rawDepth
-                         << " m and " << depth << " m");
+  INFO("normals off by " << rawNormals << " rad without, " << normals << " with the filter; depths by "
+                         << rawDepth << " m and " << depth << " m");
   CHECK(normals < 0.5 * rawNormals);
   CHECK(depth < 0.6 * rawDepth);
   CHECK(depth < 0.02);  // beyond two pixels of the edge no depth is of the other side
@@ -266,8 +273,9 @@ TEST_CASE("a map that is no square gives the same lights as the square with blac
                                      Settings{{"method", "flux"}, {"lights", 64}, {"order", "patches"}},
                                      Settings{{"method", "stride"}, {"stride", 4}});
   const auto chosen = [&](const ReflectiveShadowMap& given) {
-    const SurfaceLights lights =
-        LonePass("reflective_shadow_maps.choose", scene, settings).in("map", given).out<SurfaceLights>("lights");
+    const SurfaceLights lights = LonePass("reflective_shadow_maps.choose", scene, settings)
+                                     .in("map", given)
+                                     .out<SurfaceLights>("lights");
     std::vector<float> values = lights.lights->downloadValues<float>();
     values.resize(static_cast<std::size_t>(lights.count) * 12);
     std::vector<std::array<float, 12>> bright;
@@ -320,15 +328,18 @@ TEST_CASE("a picture is refused behind content that is seen from elsewhere") {
   scene.cameras.front().eye = {0.5, 0, 0};
   scene.cameras.front().target = {0.5, 0, -1};
   LonePass pass("captured_frames.composite", scene);
-  pass.in("gbuffer", gbufferOf(scene)).in("virtual", Image{filled(pixels(60, 40), glm::vec4(7.0f))}).in("frames", frames);
+  pass.in("gbuffer", gbufferOf(scene))
+      .in("virtual", Image{filled(pixels(60, 40), glm::vec4(7.0f))})
+      .in("frames", frames);
   CHECK_THAT(messageOf<Error>([&] { pass.run(); }), Tells("capture NAME"));
 }
 
 TEST_CASE("through a distorting lens the picture is resampled along the same rays") {
   // The radiance is a function of the ray, so that the composite shows it as a pinhole would.
   const auto radiance = [](const glm::dvec2& ray) { return static_cast<float>(2.0 + ray.x - 0.5 * ray.y); };
-  const Scene scene = sceneWith(captureOf(
-      distortedCamera(), {[&](const glm::dvec2& ray) { return SeenPixel{2.0, glm::vec3(radiance(ray))}; }}));
+  const Scene scene = sceneWith(captureOf(distortedCamera(), {[&](const glm::dvec2& ray) {
+                                            return SeenPixel{2.0, glm::vec3(radiance(ray))};
+                                          }}));
   const ImageBuffer image = LonePass("captured_frames.composite", scene)
                                 .in("gbuffer", gbufferAt({.hit = false}, {160, 120}))
                                 .in("virtual", Image{filled(pixels(160, 120), glm::vec4(0.0f))})

@@ -22,12 +22,12 @@ SeenDepths seenDepths(const Scene& scene, const SceneSnapshot& snapshot, double 
 
 /// The depths that a Kinect would tell: axial noise 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2, beyond 60 degrees of
 /// slant also 0.1 mm / sqrt(z/m) a^2 / (pi/2 - a)^2, and lateral noise 0.8 + 0.035 a / (pi/2 - a) pixels
-/// (Nguyen, Izadi & Lovell 2012, Sec. 3); steps of 2.85 mm/m^2 z^2 (Khoshelham & Elberink 2012, Eq. 9); holes
+/// (Nguyen, Izadi & Lovell 2012); steps of 2.85 mm/m^2 z^2 (Khoshelham & Elberink 2012); holes
 /// beyond 80 degrees, where the projector does not reach, below 0.5 m and beyond 5 m. The same seed gives the
 /// same noise.
 std::vector<float> kinectDepths(const SeenDepths& seen, std::uint64_t seed);
 
-/// Distance of the Kinect's projector from its camera, m (Khoshelham & Elberink 2012, Sec. 2).
+/// Distance of the Kinect's projector from its camera, m (Khoshelham & Elberink 2012).
 inline constexpr double kKinectBaseline = 0.075;
 
 }  // namespace lumivox
