@@ -5,6 +5,7 @@
 # lumivox_compile_together(TARGET [COUNT]): several sources at a time, by default 8.
 # lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: texts, graphs of passes, techniques (the device does
 # their work), commands, records, pages, plans. It takes a third of the compiler's time away.
+#   Not for a target whose precompiled headers another reads with more: g++ 12 crashes.
 option(LUMIVOX_FAST_BUILD "Read the headers that many sources include once, and compile several sources at a time" ON)
 
 # From precompiled headers g++ 12 forgets which ones are the system's, and then tells of the strings of its own library what it is wrong about

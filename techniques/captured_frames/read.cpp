@@ -85,7 +85,7 @@ class ReadPass : public Pass {
     const std::size_t newest = frame.snapshot().captures.at(index).frame;
     CapturedFrames result;
     result.camera = capture.camera;
-    result.count = std::min(wanted, static_cast<int>(newest) + 1);
+    result.count = std::min(static_cast<int>(wanted), static_cast<int>(newest) + 1);
     result.rays = frame.kept("rays of pixels", capture.hash, [&] {
       gpu::TextureRef rays =
           texture(frame, capture.camera, gpu::TextureKind::d2, gpu::Format::rgba32f, 1, "rays of pixels");
