@@ -1,7 +1,5 @@
 // Virtual content before the captured picture.
-#include <fmt/format.h>
 
-#include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "passes.h"
 
@@ -25,8 +23,12 @@ class CompositePass : public Pass {
   void run(PassContext& frame) override {
     const Image result{frame.image("virtual content before the picture")};
     const CameraView& view = frame.snapshot().camera;
-    const bool shown = frames && frames->count > 0;
-    if (shown) requireSameEye(view, frames->states.front());
+    const bool isCaptured = frames && frames->count > 0,
+               shown = isCaptured && isSameEye(view, frames->states.front());
+    if (isCaptured && !shown)
+      frame.warn(
+          "the camera does not stand where the depth camera stood, so that its picture is left out; expected a "
+          "camera with 'capture NAME'");
     code::composite::Parameters parameters{};
     if (shown) {
       const CaptureCamera& camera = frames->camera;
@@ -54,13 +56,11 @@ class CompositePass : public Pass {
   }
 
   /// Only from the place of the depth camera is the picture what lies behind the virtual content.
-  static void requireSameEye(const CameraView& view, const CaptureState& state) {
+  static bool isSameEye(const CameraView& view, const CaptureState& state) {
     constexpr float kSame = 1e-4f;
     const float turned =
         glm::length(view.forward - state.toWorld[2]) + glm::length(view.right - state.toWorld[0]);
-    if (glm::length(view.eye - state.eye) > kSame || turned > kSame)
-      throw Error(
-          "the camera does not stand where the depth camera stood; expected a camera with 'capture NAME'");
+    return glm::length(view.eye - state.eye) <= kSame && turned <= kSame;
   }
 };
 

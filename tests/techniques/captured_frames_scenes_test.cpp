@@ -92,7 +92,7 @@ TEST_CASE("three pictures from three sides err less than one of them") {
     RenderOptions options;
     options.width = kSmall.width, options.height = kSmall.height;
     const Pipeline text = captured();
-    options.parameters = text.settings({std::string("frames=") + frames});
+    options.parameters = text.settings({std::string("pictures=") + frames});
     const FrameResult frame = PipelineExecutor(device(), techniques(), scene, text, options).render(last);
     ReferenceOptions truth = quietly(kSmall.referenceSamples);
     truth.width = kSmall.width, truth.height = kSmall.height, truth.time = last;
