@@ -29,7 +29,8 @@ struct PortTraits<captured_frames::CapturedFrames> {
          {"depth", "d2Array r32f", "m along the view axis; 0 in holes"},
          {"rays", "d2 rgba32f",
           "xy of the ray (x, y, 1) through the middle of a pixel, x right and y down; z the area of the pixel in "
-          "the plane of depth 1, 0 where the distortion has no inverse"},
+          "the plane of depth 1, 0 where the distortion has no inverse",
+          PortResource::Sign::any},
          {"poses", "buffer", "array of CapturedPose in shaders/captured_frames/camera.glsl"}}};
   }
   static void contents(const captured_frames::CapturedFrames& port, PortContents& contents) {
