@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
             files.folder().string(), 0.82 * width, 0.82 * width, 0.5 * (width - 1), 0.5 * (height - 1)),
         files.folder() / "capture.scene");
     const Pipeline text = Pipeline::parse(
-        "pipeline \"lights\" {\n param filter 1 in 0..8\n pass gbuffer direct_lighting.gbuffer { }\n"
+        "pipeline \"lights\" {\n param filter 2 in 0..8\n pass gbuffer direct_lighting.gbuffer { }\n"
         " pass read captured_frames.read { }\n pass lights captured_frames.lights {\n frames read.frames\n filter $filter\n }\n"
         " pass choose reflective_shadow_maps.choose { map lights.map }\n"
         " pass gather reflective_shadow_maps.gather {\n gbuffer gbuffer\n lights choose.lights\n }\n"

@@ -16,11 +16,13 @@ layout(std140, binding = 0) uniform Parameters {
   int layer;             // frame; smaller ones are newer
   int saturated;
   float saturatedScale;
+  float brightest;       // radiance of lamps, W/(sr m^2); 0: none is so bright
 };
 layout(binding = 0) uniform sampler2DArray capturedColour;
 layout(binding = 1) uniform sampler2DArray filteredDepth;
 layout(binding = 2) uniform sampler2D capturedRays;
-layout(binding = 3) uniform sampler2DArray newerPosition;  // positionImage, of which newer layers are done
+layout(binding = 3) uniform sampler2DArray newerPosition;  // positionImage and normalImage, of which newer layers are done
+layout(binding = 4) uniform sampler2DArray newerNormal;
 layout(std430, binding = 0) readonly buffer Poses { CapturedPose poses[]; };
 layout(std430, binding = 1) buffer Counts { uint counts[]; };
 layout(binding = 0, rgba32f) uniform writeonly image2DArray positionImage;
@@ -52,7 +54,9 @@ bool isSeenLater(vec3 posWorld) {
     ivec2 pixel = ivec2(floor(focal * distortedRay(ray, radial, tangential) + centre + 0.5));
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, textureSize(newerPosition, 0).xy))) continue;
     vec4 other = texelFetch(newerPosition, ivec3(pixel, newer), 0);
-    if (other.w > 0.0 && abs(dot(other.xyz - pose.eye.xyz, pose.forward.xyz) - depth) <= 2.0 * depthDeviation(depth)) return true;
+    // From the plane of the pixel: along the view a slanted surface leaves it within the pixel.
+    float apart = dot(texelFetch(newerNormal, ivec3(pixel, newer), 0).xyz, posWorld - other.xyz);
+    if (other.w > 0.0 && abs(apart) <= 2.0 * depthDeviation(depth)) return true;
   }
   return false;
 }
@@ -78,7 +82,7 @@ uint lightOf(ivec2 pixel, ivec2 size, out vec4 position, out vec4 normalArea, ou
   mat3 toWorld = mat3(pose.right.xyz, pose.down.xyz, pose.forward.xyz);
   vec3 posWorld = pose.eye.xyz + toWorld * here;
   if (isSeenLater(posWorld)) return kSeenLater;
-  bool isSaturated = colour.w > 1.5;
+  bool isSaturated = colour.w > 1.5 || (brightest > 0.0 && max(colour.r, max(colour.g, colour.b)) >= brightest);
   // The rays of a pixel fill the area ray.z at depth 1, and z^2 of it at depth z; a surface at a slant fills more.
   float area = here.z * here.z * ray.z / facing;
   vec3 radiance = colour.rgb * (isSaturated && saturated == kSaturatedScaled ? saturatedScale : 1.0);

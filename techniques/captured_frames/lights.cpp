@@ -34,6 +34,10 @@ class LightsPass : public Pass {
       this, "saturated", Saturated::kept,
       "colours at the end of the file's range; kept: as they are; dropped: no light, for lamps "
       "that the scene has as lights; scaled: times 'saturated_scale'"};
+  Param<float> brightest{
+      this, "brightest", 0.0f, within(0.0f, 1e15f),
+      "radiance from which a colour counts as saturated too, W/(sr m^2): of lamps in files of "
+      "floats; 0: none"};
   Param<float> saturatedScale{this, "saturated_scale", 10.0f, within(0.0f, 1e9f),
                               "with 'scaled': radiance of such a pixel over what the file holds"};
   Out<ReflectiveShadowMap> map{this, "map", Contributes::nothing, Needs::capturedFrame,
@@ -71,12 +75,14 @@ class LightsPass : public Pass {
       frame.dispatch(frame.program(code::lights::Variant{.counted = frame.inspects()}),
                      {code::lights::parameters({.layer = layer,
                                                 .saturated = static_cast<int>(Saturated(saturated)),
-                                                .saturatedScale = saturatedScale}),
+                                                .saturatedScale = saturatedScale,
+                                                .brightest = brightest}),
                       camera_(), code::lights::capturedColour(frames->colour, gpu::Sampling::nearest),
                       code::lights::filteredDepth(depth, gpu::Sampling::nearest),
                       code::lights::capturedRays(frames->rays, gpu::Sampling::nearest),
                       code::lights::poses(frames->poses),
                       code::lights::newerPosition(result.position, gpu::Sampling::nearest),
+                      code::lights::newerNormal(result.normal, gpu::Sampling::nearest),
                       code::lights::positionImage(result.position), code::lights::normalImage(result.normal),
                       code::lights::fluxImage(result.flux), code::lights::counts(counts)},
                      {camera.width, camera.height, 1});

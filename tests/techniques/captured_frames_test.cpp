@@ -12,7 +12,6 @@ using namespace lumivox::test;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 const Settings kRaw{{"filter", 0}};
 
 /// Freiburg 1 of the TUM RGB-D benchmark, for images a quarter as wide.

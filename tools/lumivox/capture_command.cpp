@@ -12,6 +12,7 @@
 #include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/reference/depth.h"
+#include "lumivox/reference/emission.h"
 #include "lumivox/reference/path_tracer.h"
 
 namespace lumivox::command {
@@ -35,17 +36,14 @@ glm::dquat rotationOf(const CameraView& camera) {
       glm::dmat3(glm::dvec3(camera.right), -glm::dvec3(camera.up), glm::dvec3(camera.forward))));
 }
 
-/// The radiance that the brightest hundredth of the pixels with a surface exceeds.
-double brightEnough(const ImageBuffer& image) {
-  std::vector<float> brightest;
+/// The brightest radiance that is no lamp's.
+double brightEnough(const ImageBuffer& image, const std::vector<unsigned char>& emits) {
+  float brightest = 0.0f;
   for (std::size_t i = 0; i < image.pixelCount(); ++i) {
     const float* pixel = image.values().data() + 3 * i;
-    brightest.push_back(std::max({pixel[0], pixel[1], pixel[2]}));
+    if (emits.empty() || emits[i] == 0) brightest = std::max({brightest, pixel[0], pixel[1], pixel[2]});
   }
-  const auto last =
-      brightest.begin() + static_cast<std::ptrdiff_t>(brightest.size() - 1 - brightest.size() / 100);
-  std::nth_element(brightest.begin(), last, brightest.end());
-  return *last > 0.0f ? static_cast<double>(*last) : 1.0;
+  return brightest > 0.0f ? static_cast<double>(brightest) : 1.0;
 }
 
 ByteImage encoded(const ImageBuffer& image, double exposure) {
@@ -94,7 +92,9 @@ class Writer {
       image.layers["Z"] = std::move(z);
       writeExr(command_.output / fmt::format("frame_{:04}.exr", frame), image);
     } else {
-      if (!(exposure_ > 0.0)) exposure_ = command_.exposure > 0.0 ? command_.exposure : brightEnough(colour);
+      if (!(exposure_ > 0.0))
+        exposure_ = command_.exposure > 0.0 ? command_.exposure
+                                            : brightEnough(colour, emittingPixels(scene_, snapshot));
       const std::string name = fmt::format("{:04}.png", frame);
       writeBytePng(command_.output / "rgb" / name, encoded(colour, exposure_));
       writeGreyPng16(command_.output / "depth" / name, units(seen, depths));
@@ -177,7 +177,7 @@ void addCaptureCommand(Commands& commands) {
   command
       ->add_option(
           "--exposure", all->exposure,
-          "radiance that a PNG shows as white, W/(sr m^2) (default: so that 1 % of the first frame is white)")
+          "radiance that a PNG shows as white, W/(sr m^2) (default: the brightest of the first frame but for lamps)")
       ->check(numberBetween(1e-12, 1e12));
   addSeed(*command, all->options.seed, "of the noise");
   addTime(*command, all->options.time);

@@ -26,8 +26,10 @@ double axialDeviation(double depth, double angle) {
   return deviation;
 }
 
-double lateralDeviation(double angle) {
-  return 0.8 + 0.035 * angle / (0.5 * std::numbers::pi - angle);
+/// In pixels of an image so wide.
+double lateralDeviation(double angle, int width) {
+  constexpr double kColumns = 640.0;  // of the sensor
+  return width / kColumns * (0.8 + 0.035 * angle / (0.5 * std::numbers::pi - angle));
 }
 
 /// Disparities have steps: so have depths, wider with the square of the distance.
@@ -85,8 +87,9 @@ std::vector<float> kinectDepths(const SeenDepths& seen, std::uint64_t seed) {
       };
       const std::size_t at = index(x, y);
       RandomStream random(seed, static_cast<std::uint32_t>(at));
-      const double lateral =
-          seen.depth[at] > 0.0f ? lateralDeviation(std::min<double>(seen.angle[at], kSteepest)) : 0.0;
+      const double lateral = seen.depth[at] > 0.0f
+                                 ? lateralDeviation(std::min<double>(seen.angle[at], kSteepest), seen.width)
+                                 : 0.0;
       const double right = lateral * normal(random), down = lateral * normal(random), along = normal(random);
       const std::size_t from = index(std::clamp(x + static_cast<int>(std::lround(right)), 0, seen.width - 1),
                                      std::clamp(y + static_cast<int>(std::lround(down)), 0, seen.height - 1));
