@@ -359,7 +359,8 @@ TEST_CASE(
   // The colour camera far to the side: near points come before far ones, and most fall outside.
   made.colourPose[3] = {0.3, 0.0, 0.0, 1.0};
   made.depth.values = {1000, 1000, 1000, 1000, 1000, 1500, 3000, 1000, 1000, 1000, 1000, 1000};
-  const Scene shifted = with(made.bytes()).load(kSens);
+  const CaptureFiles others = with(made.bytes());
+  const Scene shifted = others.load(kSens);
   const auto seen = only(shifted).image(0);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < 12; ++i) unknown += std::isnan(seen->colour[3 * i]);
@@ -396,10 +397,10 @@ TEST_CASE("the last frame of a .sens file that was cut off is left out") {
 
 TEST_CASE("depth images of 8 bits, of other sizes or absent are refused with their file") {
   CaptureFiles files = tum(kPairs, kTwoPoses);
-  files.image("c/depth/1.1.png", WordImage{2, 2, {1, 2, 3, 4}});
+  files.image("c/depth/1.1.png", WordImage{8, 6, std::vector<std::uint16_t>(48, 1000)});
   const Scene scene = files.load();
   CHECK_THAT(test::messageOf<Error>([&] { only(scene).image(1); }),
-             Tells("'c'", "frame 1", "2 x 2", "4 x 3"));
+             Tells("'c'", "frame 1", "8 x 6", "4 x 3"));
   files.image("c/depth/1.0.png", colourImage());
   CHECK_THAT(files.refusal(), Tells("1.0.png", "8 bits", "16 bits"));
   std::filesystem::remove(files.directory.path() / "c/depth/1.0.png");
