@@ -32,7 +32,9 @@ std::string textIn(const std::string& svg) {
 
 /// The scene of each card's picture: one on which a run needs as much of the pipeline as on any.
 fs::path sceneFor(const std::string& technique) {
-  const std::string name = technique == "volumetric_smoke" ? "smoke" : "cornell_glossy";
+  const std::string name = technique == "volumetric_smoke"  ? "smoke"
+                           : technique == "captured_frames" ? "mixed_reality"
+                                                            : "cornell_glossy";
   return sourceDirectory() / "scenes" / (name + ".scene");
 }
 
