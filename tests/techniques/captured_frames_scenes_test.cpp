@@ -170,7 +170,6 @@ TEST_CASE("errors of captured frames", "[.]") {
     row(", exact, every pixel at every pixel", clean, captured("brute_force"), {"brightest=1"});
     row(", every pixel at every pixel", one, captured("brute_force"), none);
     row(", without the filter", one, captured(), {"filter=0"});
-    row(", lamp kept", one, captured(), {"saturated=kept"});
     row(", without occlusion", one, captured(), {"occlusion=off"});
     row(", as published", one, captured("as_published"), none);
   });
