@@ -33,7 +33,7 @@ Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSn
     if (!otherOrigin && a.toWorld == b.toWorld && a.positions == b.positions && a.normals == b.normals)
       continue;
     changed = changed | Reads::geometry;
-    // Emissive objects are lights.
+    // Emissive objects are lights too.
     if (emits(scene, scene.objects[i])) changed = changed | Reads::lights;
   }
   if (otherOrigin || before.lights != after.lights) changed = changed | Reads::lights;
@@ -51,7 +51,7 @@ Reads whatChanged(const Scene& before, const Scene& after) {
                         before.objects != after.objects;
   const bool materials = before.materials != after.materials || before.textures != after.textures;
   if (geometry) changed = changed | Reads::geometry;
-  // Which part has which material is said by the objects.
+  // Objects assign materials to parts.
   if (materials || before.objects != after.objects) changed = changed | Reads::materials;
   const auto emits = [](const Scene& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),

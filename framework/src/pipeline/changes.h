@@ -5,11 +5,11 @@
 
 namespace lumivox {
 
-/// Between two snapshots of a scene: what moves.
+/// Changes between two snapshots of a scene: motion, lights, camera, time.
 Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSnapshot& after);
 
-/// Between two scenes, such as a text before and after an edit: what their snapshots do not hold. Cameras and
-/// lights without extent are in the snapshots.
+/// Changes between two scenes, such as a text before and after an edit, in parts that snapshots do not hold.
+/// Cameras and lights without extent are in snapshots.
 Reads whatChanged(const Scene& before, const Scene& after);
 
 }  // namespace lumivox

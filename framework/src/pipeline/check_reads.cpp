@@ -1,5 +1,5 @@
-// --check-reads: every frame a second time from scratch. What differs tells which pass was not run again, or
-// left out, though the scene gave it a reason.
+// --check-reads renders every frame a second time from scratch. A difference names the pass that should have
+// run again, or that was left out although the scene needs it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,11 +34,11 @@ std::string differenceOf(const OutBase& output, const OutBase& scratch) {
   return different == 0 ? std::string() : fmt::format("{} of {} bytes", different, all);
 }
 
-/// Values of an image, against those of the same one where nothing was left out, or (null) against its
+/// Compares an image with the same one of a run that leaves nothing out or, if `lean` is null, with its
 /// neutral element.
 std::string differenceOfImages(const OutBase& whole, const OutBase* lean) {
   if (whole.contributes() == Contributes::nothing || whole.textures().empty()) return {};
-  // The fourth channel of a radiance holds nothing.
+  // The fourth channel of a radiance is unused.
   const int channels = channelsOf(whole.contributes());
   const ImageBuffer image = imageOf(*whole.textures().front(), channels);
   const ImageBuffer other = lean != nullptr
@@ -51,7 +51,8 @@ std::string differenceOfImages(const OutBase& whole, const OutBase* lean) {
   return different == 0 ? std::string() : fmt::format("{} of {} values", different, image.values().size());
 }
 
-/// One frame of a run, beside the same frame made from scratch and made without leaving anything out.
+/// Compares one frame of a run with the same frame made from scratch, and with the same frame made without
+/// leaving anything out.
 class Comparison {
  public:
   Comparison(const BoundGraph& graph, const PrunePlan& plan, const std::vector<PassRecord>& records)
@@ -71,13 +72,13 @@ class Comparison {
     });
   }
 
-  /// Finds parts left out though they make a difference; `lean` is up to date.
+  /// Finds parts that were left out although they make a difference. Precondition: `lean` is up to date.
   void compareWithWhole(const BoundGraph& lean, const BoundGraph& whole) {
     forEachOutput([&](std::size_t pass, const OutBase&, OutputIndex index) -> std::string {
       const OutBase &less = lean.output(index), &everything = whole.output(index);
       const OutputPlan& planned = plan_.output(index);
       if (!everything.hasValue() || !everything.kind().isSameType(portKind<Image>())) return {};
-      // An output that nobody reads may be anything where its inputs are left out.
+      // An output without a reader may hold anything if its inputs are left out.
       if (!planned.wanted && (planned.lacksNeed || (planned.impossible && isShown(index)))) {
         const std::string difference = differenceOfImages(everything, nullptr);
         return difference.empty()
@@ -97,8 +98,8 @@ class Comparison {
   std::vector<std::string> findings;
 
  private:
-  /// `differs` returns what to say of an output, or nothing. What differs behind another difference follows
-  /// from it and is not told.
+  /// `differs` returns the finding about an output, or nothing. A difference downstream of another one
+  /// follows from it and is not reported.
   template <class Differs>
   void forEachOutput(const Differs& differs) {
     std::vector<bool> differing(graph_.passes.size(), false);
@@ -131,7 +132,7 @@ class Comparison {
     return "it ran: it keeps something whose key leaves out what it depends on";
   }
 
-  /// Sources without a texture to compare that were not run again.
+  /// Adds sources that were not run again and have no texture to compare.
   void addStaleSources(std::size_t pass, std::vector<std::string>& suspects) {
     for (const OutputIndex source : graph_.passes[pass].sources) {
       if (!source.valid() || !plan_.output(source).wanted || !graph_.output(source).textures().empty())
@@ -158,7 +159,7 @@ class Comparison {
     return pass.kept ? plan_.output(index).why : pass.why;
   }
 
-  /// The parts that the pass and those before it leave out.
+  /// The parts that the pass and its sources leave out.
   std::string whyLess(std::size_t pass) const {
     std::vector<std::string> left;
     std::vector<bool> seen(graph_.passes.size(), false);
@@ -192,7 +193,7 @@ class Comparison {
 
 void PipelineExecutor::State::checkReads(FrameResult& result) {
   State &anew = *scratch->state_, &everything = *whole->state_;
-  // With histories passes go on from what the frames before left, and only from that.
+  // With accumulation, a frame depends on the frames before it: it cannot be made from scratch.
   if (options.accumulate)
     anew.complete = false;
   else

@@ -41,8 +41,8 @@ void FrameContext::checkAfterFrame(gpu::BufferRef counts, std::uint64_t offsetBy
 }
 
 bool FrameContext::allHadRoom() {
-  // Each attempt finds out what is needed by passes that had enough at their inputs: a chain of passes needs
-  // as many as it is long, and one that doubles its room no more than a word has bits.
+  // An attempt finds the need of a pass only if its inputs were complete. A chain of passes therefore takes
+  // as many attempts as it has passes, and a pass that doubles its room at most as many as a word has bits.
   constexpr int kMostAttempts = 64;
   bool enough = true;
   for (const PendingCheck& one : std::exchange(pendingChecks_, {})) {
@@ -112,7 +112,7 @@ void FrameContext::setScene(const Scene& scene, bool uploads) {
 }
 
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
-  pendingChecks_.clear();  // of a frame that an error ended
+  pendingChecks_.clear();  // left by a frame that an error ended
   snapshot_ = std::move(snapshot);
   frameIndex_ = frameIndex;
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);
@@ -137,7 +137,7 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
   device_.enterPass(name);
   try {
     pass.run(*this);
-    // The writes of a pass are visible to every later one, however it reads them.
+    // The writes of a pass are visible to every later pass, for every kind of read.
     device_.barrier();
     elapsed.hostMs = since(start);
   } catch (...) {
@@ -147,7 +147,7 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
     device_.leavePass();
     if (fenced) device_.finish();
   } catch (...) {
-    // The pass's own error came first and explains more.
+    // If the pass threw, its error came first and explains more.
     if (!failure) failure = std::current_exception();
   }
   if (fenced) elapsed.deviceMs = since(start);
@@ -160,7 +160,7 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
   } catch (const AbsentError& error) {
     throw AbsentError("pass " + name + ": " + error.what());
   } catch (const std::bad_alloc&) {
-    // How much was asked for is not known, only what was there.
+    // The size of the request is unknown here, only the available memory.
     throw Error(fmt::format(
         "pass {}: out of memory; {}, textures and buffers take {}, of which this pass asked for {}{}", name,
         availableMemory() == ~std::uint64_t{0} ? std::string("how much is available is not known")

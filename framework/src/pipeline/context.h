@@ -1,4 +1,4 @@
-// The frame as a pass sees it while it runs; one for the executor and for the harness.
+// The frame as a pass sees it while it runs, for the executor and the harness alike.
 #pragma once
 
 #include <functional>
@@ -51,41 +51,42 @@ class FrameContext : public PassContext {
 
   ResourcePool& pool() { return pool_; }
   PassMemory& memory() { return memory_; }
-  /// Another scene from now on. `uploads`: what the device has of the old one is of no use.
+  /// Replaces the scene. `uploads`: the device's copy of the old one cannot be used and is uploaded anew.
   void setScene(const Scene& scene, bool uploads);
   void setSeed(std::uint64_t seed) { seed_ = seed; }
   /// Names of the passes that have asked for the seed in any frame so far.
   const std::set<std::string>& seeded() const { return seeded_; }
-  /// The device's copy of the scene follows when `geometryChanged`.
+  /// Updates the device's copy of the scene if `geometryChanged`.
   void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
   /// Whether histories are carried from frame to frame.
   void setAccumulates(bool accumulates) { accumulates_ = accumulates; }
   void setInspects(bool inspects) { inspects_ = inspects; }
   /// Notes of passes about themselves since the last call, each with its pass's name.
   std::vector<std::string> takeNotes() { return std::exchange(notes_, {}); }
-  /// Parts of passes that were taken over from earlier frames, by pass.
+  /// Results of PassContext::kept() that were reused from earlier frames, by pass.
   struct Reused {
     std::string pass, what;
     auto operator<=>(const Reused&) const = default;
   };
   const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
-  /// Runs one pass under its name: driver errors and errors of the pass carry it, once. `fenced`: waits for
-  /// the device before and after, and takes the time between as the device's; without it that is 0.
-  /// `accumulated`: what the pass is told under this name.
+  /// Runs one pass. Errors of the pass and of the driver carry its name, once. `fenced`: waits for the device
+  /// before and after and returns the time between; otherwise the time is 0. `accumulated`: the value of
+  /// PassContext::accumulated().
   gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false, int accumulated = 0);
   /// Whether a pass of the frame has left a count to be checked.
   bool hasCounts() const { return !pendingChecks_.empty(); }
-  /// Once the device is idle: has the counts of the frame checked. False when a pass had too little room, so
-  /// that the frame has to be rendered again, with nothing that was kept. Error when that does not help.
+  /// Checks the counts of the frame; call it when the device is idle. Returns false if a pass had too little
+  /// room: the frame must then be rendered again, without anything kept. Throws Error after too many
+  /// attempts.
   bool allHadRoom();
-  /// Bytes that the last run asked the pool for.
+  /// Bytes that the last run requested from the pool.
   std::uint64_t bytesOfRun() const { return bytesOfRun_; }
 
  private:
   Kept& keptEntry(const std::string& what) override;
   void tellReused(const std::string& what) override;
-  /// Error for a pass that did not say that it reads what earlier frames left.
+  /// Throws Error if the pass does not declare Reads::history.
   void requireHistory(const char* called) const;
 
   gpu::Device& device_;
@@ -100,7 +101,7 @@ class FrameContext : public PassContext {
   int frameIndex_ = 0;
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
   std::string passName_, lastResource_;  ///< lastResource_: label, as this run asked the pool for it
-  const Pass* pass_ = nullptr;           ///< that runs
+  const Pass* pass_ = nullptr;           ///< the pass that runs
   int accumulated_ = 0;
   bool accumulates_ = false, inspects_ = false;
   struct PendingCheck {
@@ -110,7 +111,7 @@ class FrameContext : public PassContext {
     CountCheck check;
   };
   std::vector<PendingCheck> pendingChecks_;  ///< of this frame
-  int attempts_ = 0;                         ///< at this frame that had too little room
+  int attempts_ = 0;                         ///< attempts at this frame that had too little room
   std::vector<std::string> notes_;
   std::set<std::string> warnings_;
   mutable std::set<std::string> seeded_;

@@ -1,4 +1,4 @@
-// Running a bound pipeline: what changed since the last frame decides which of the kept passes run again.
+// Runs a bound pipeline: the changes since the last frame decide which of the kept passes run again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Per pass: the most bounces that it or a pass before it models.
+/// Per pass, the largest number of bounces that it or one of its sources models.
 std::vector<int> bouncesOf(const BoundGraph& graph) {
   std::vector<int> bounces(graph.passes.size(), 0);
   for (const int position : graph.order) {
@@ -88,7 +88,7 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
 
 namespace {
 
-/// Whether a pass sees other inputs, or is asked for other outputs, with another plan.
+/// Whether the two plans give a pass different inputs or want different outputs of it.
 bool planDiffers(const BoundPass& bound, std::size_t pass, const PrunePlan& before, const PrunePlan& after) {
   const PassPlan &a = before.passes[pass], &b = after.passes[pass];
   if (a.kept != b.kept) return true;
@@ -101,8 +101,8 @@ bool planDiffers(const BoundPass& bound, std::size_t pass, const PrunePlan& befo
 
 }  // namespace
 
-/// Passes say by what is wanted of them which inputs they use, and those say what is wanted of others:
-/// planned again until nothing more falls away.
+/// The wanted outputs of a pass decide which inputs it uses, and those decide which outputs of other passes
+/// are wanted. So planning repeats until nothing more falls away.
 PrunePlan PipelineExecutor::State::planFor(const PruneRequest& run) {
   for (const BoundPass& pass : graph.passes)
     for (OutBase* output : pass.object->outputs()) output->wanted_ = true;
@@ -167,7 +167,7 @@ bool PipelineExecutor::State::readsWhatChanged(std::size_t pass, Reads changed,
 
 namespace {
 
-/// Connected outputs that are read in the frame that made them.
+/// Connected outputs that a pass reads in the frame that made them.
 std::vector<OutputIndex> sourcesNow(const BoundPass& pass) {
   std::vector<OutputIndex> result;
   for (std::size_t i = 0; i < pass.sources.size(); ++i)
@@ -178,8 +178,8 @@ std::vector<OutputIndex> sourcesNow(const BoundPass& pass) {
 
 }  // namespace
 
-/// Per pass of the graph. A pass runs when something that it reads changed, when a source of it did, or when
-/// a value that such a pass needs was given back meanwhile.
+/// Per pass of the graph: whether it runs. A pass runs if something that it reads changed, if one of its
+/// sources runs, or if a value that such a pass needs was returned to the pool meanwhile.
 std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const SceneSnapshot& snapshot) const {
   const bool all = !complete || options.keepEverything;
   std::vector<bool> runs(graph.passes.size(), false);
@@ -190,7 +190,7 @@ std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const Scen
       if (runs[static_cast<std::size_t>(source.pass)]) runs[index] = true;
     }
   }
-  // From here on a pass may be added without running its readers: the same inputs give the same values again.
+  // Passes added from here on do not make their readers run: the same inputs give the same values again.
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     const OutputIndex source = graph.outputs[i].source;
     if (request.wanted[i] && plan->output(source).wanted && !graph.output(source).hasValue()) {
@@ -214,8 +214,7 @@ PipelineExecutor::State::Instrument PipelineExecutor::State::instrumentOf(Timing
 }
 
 PipelineExecutor::State::Clock::time_point PipelineExecutor::State::startFrame(Instrument instrument) {
-  // Frames whose passes the device times follow each other without a gap, so that it never waits for the
-  // host.
+  // Frames timed by the device follow each other without a gap, so that the device never waits for the host.
   if (instrument != Instrument::stamps) device.finish();
   account->resetPeak();
   return Clock::now();
@@ -243,7 +242,7 @@ void PipelineExecutor::State::readTimes(const std::vector<gpu::PassTimers::Frame
 void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, FrameResult& result) {
   const BoundPass& bound = graph.passes[index];
   PassRecord record{bound.name, bound.technique, bound.pass};
-  if (options.countWork) context.shaders().takeWork();  // what was done between the passes
+  if (options.countWork) context.shaders().takeWork();  // drops the work counted between the passes
   record.onHost = bound.object->worksOnHost();
   const bool stamped = instrument == Instrument::stamps && !record.onHost;
   const bool fenced = instrument != Instrument::none && !stamped;
@@ -258,7 +257,7 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   const auto& outputs = bound.object->outputs();
   for (std::size_t port = 0; port < outputs.size(); ++port) {
     const bool wanted = plan->passes[index].outputs[port].wanted;
-    // An output that was left out is absent for its readers, whatever the pass did.
+    // An unwanted output is absent for its readers even if the pass assigned it.
     if (!wanted) outputs[port]->reset();
     if (wanted && !outputs[port]->hasValue()) {
       throw Error(fmt::format("pass {}: it did not set its output '{}'", bound.name, outputs[port]->name()));
@@ -270,7 +269,7 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   result.passes.push_back(std::move(record));
 }
 
-/// What stands in a scene is expected in its image, and the reference shows it.
+/// Users expect everything in a scene to affect its image, as it does in the reference.
 void PipelineExecutor::State::warnOfUnreadTraits(const SceneSnapshot& snapshot) const {
   Camera camera = scene->camera(options.camera);
   camera.aperture = snapshot.camera.aperture;
@@ -295,7 +294,8 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
 
   const Instrument instrument = instrumentOf(timing);
   std::optional<FrameResult> result = attempt(changed, instrument, start);
-  // An incomplete frame is rendered again: nothing of it is kept, and the time is that of all attempts.
+  // An incomplete frame is rendered again. Nothing of it is kept, and the time of the frame includes all
+  // attempts.
   while (!result) result = attempt(Reads::nothing, instrument, start);
   if (timing == Timing::passes) result->frameMs = std::numeric_limits<double>::quiet_NaN();
   if (options.accumulate) holdHistories();
@@ -318,7 +318,7 @@ std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instr
   context.setFrame(*last, *lastFrameIndex, reads(changed, Reads::geometry));
   context.memory().abandonFrame();
   if (!complete) context.memory().forgetKept();
-  // Until the frame is done, an error leaves nothing that a later frame could take for current.
+  // If an error ends this frame, no later frame may take its results for current.
   complete = false;
   for (const int index : plan->order) {
     if (!runs[static_cast<std::size_t>(index)]) continue;
@@ -351,8 +351,8 @@ std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instr
     }
   }
   result.betweenPassesMs = millisecondsSince(start) - passesMs - scanMs;
-  // Counts are read when the device is idle; without any, frames that are stamped follow each other without a
-  // gap.
+  // Counts are read when the device is idle. Without counts, frames timed by stamps follow each other without
+  // a gap.
   if (instrument != Instrument::stamps || context.hasCounts()) device.finish();
   const bool enough = context.allHadRoom();
   if (instrument == Instrument::stamps) {
@@ -435,7 +435,7 @@ FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameInd
 std::vector<std::vector<PassRecord>> PipelineExecutor::timedPasses() {
   State& s = *state_;
   if (!s.awaited.empty()) {
-    s.device.finish();  // tells what the driver found wrong meanwhile
+    s.device.finish();  // reports what the driver found wrong meanwhile
     s.readTimes(s.timers.takeAll());
   }
   return std::exchange(s.timed, {});

@@ -35,7 +35,7 @@ void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapsho
   std::vector<bool> disturbed(graph.passes.size());
   for (std::size_t pass = 0; pass < graph.passes.size(); ++pass)
     disturbed[pass] = mustRun[pass] || readsWhatChanged(pass, changed & ~Reads::history, snapshot);
-  // Histories lead back to earlier passes, so that one round need not be enough.
+  // Histories lead back to earlier passes, so one round may not be enough.
   for (bool again = true; again;) {
     again = false;
     for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
@@ -109,8 +109,8 @@ void PipelineExecutor::State::replacePasses(BoundGraph next, const Begins& begin
 }
 
 void PipelineExecutor::State::setParameters(const ParameterValues& values) {
-  // Bound anew, which finds every error before anything changes. Passes whose parameters stay as they are
-  // stay too, with what they made; the others begin like those of a new executor.
+  // Binding anew finds every error before anything changes. Passes with unchanged parameters stay, with their
+  // results; the others start like those of a new executor.
   BoundGraph next = bindPipeline(pipeline, techniques, values);
   options.parameters = values;
   forEachCheck([&](PipelineExecutor& check) { check.setParameters(values); });
@@ -135,7 +135,7 @@ void PipelineExecutor::State::renewPasses() {
 // ---- scene ---------------------------------------------------------------------------------------------
 
 void PipelineExecutor::State::setScene(const Scene& next) {
-  next.camera(options.camera);  // an error leaves everything as it was
+  next.camera(options.camera);  // throws before anything changes
   const Reads changed = whatChanged(*scene, next);
   const bool otherObjects = scene->objects.size() != next.objects.size();
   scene = &next;
@@ -144,7 +144,7 @@ void PipelineExecutor::State::setScene(const Scene& next) {
   const SceneTraits traits = SceneTraits::of(next);
   const bool otherTraits = std::exchange(sceneTraits, traits) != traits;
   if (changed == Reads::nothing && !otherTraits) return;
-  // A pass may know the scene that it reads: how its surfaces hang together, its largest triangle.
+  // A pass may have cached facts of the scene, such as its connectivity or its largest triangle.
   replacePasses(bindPipeline(pipeline, techniques, options.parameters), [&](std::size_t pass, const Pass&) {
     return reads(readsOf(*graph.passes[pass].object), changed);
   });

@@ -49,7 +49,7 @@ void explainPasses(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
-/// Outputs of kept passes that are not computed, and so have no memory.
+/// Outputs of kept passes that are not computed and therefore take no memory.
 void explainResources(const ExplainedRun& run, Explanation& explanation) {
   for (std::size_t i = 0; i < run.graph.passes.size(); ++i) {
     const BoundPass& pass = run.graph.passes[i];
@@ -91,7 +91,7 @@ void explainVariants(const ExplainedRun& run, Explanation& explanation) {
     explanation.variantsPossible += usage.possible;
     explanation.variantsCompiled += usage.compiled;
     explanation.variantsNeeded += usage.needed.size();
-    // Before the first frame nothing was asked for yet.
+    // Before the first frame no variant was requested.
     if (run.passMs.empty() || usage.needed.size() >= usage.compiled) continue;
     std::string why = "no pass that ran uses this program";
     if (!usage.needed.empty()) {
@@ -110,7 +110,7 @@ void explainVariants(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
-/// Kept passes that later frames of this scene do not run again.
+/// Kept passes that do not run again in later frames of this scene.
 void explainTime(const ExplainedRun& run, Explanation& explanation) {
   for (const int index : run.plan.order) {
     const PassPlan& plan = run.plan.passes[static_cast<std::size_t>(index)];
@@ -131,12 +131,12 @@ void explainTime(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
-/// A trait of a scene, the reads by which a pass sees it, and what an image is without.
+/// A trait of a scene, the reads by which a pass sees it, and the effect on the image if no pass does.
 struct Trait {
   Reads seenBy;
   LeftOut::Level level;
   enum class In { everyImage, radiance } shownIn;
-  std::string (*what)(const Seen&);  ///< empty: the scene has it not
+  std::string (*what)(const Seen&);  ///< empty: the scene lacks it
   const char* why;
 };
 

@@ -1,4 +1,4 @@
-// The parts that a run leaves out, in words.
+// Explains in words what a run leaves out.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace lumivox {
 
-/// What there is to be seen by a run.
+/// The scene, camera and traits of a run.
 struct Seen {
   const SceneTraits& traits;
   const Scene& scene;
@@ -26,7 +26,7 @@ struct ExplainedRun {
   std::map<std::string, shader::ShaderLibrary::Usage> usage;
   const std::map<std::string, shader::ShaderPack>& packs;
   const std::set<FrameContext::Reused>& reusedParts;
-  std::map<int, double> passMs;  ///< per pass that ran so far, its last device time
+  std::map<int, double> passMs;  ///< the last device time of each pass that ran
   const Seen seen;
   const PruneRequest& request;
   bool keepEverything = false;
@@ -35,9 +35,9 @@ struct ExplainedRun {
 
 Explanation explainRun(const ExplainedRun& run);
 
-/// What the scene and the camera have that no pass which runs reads (Pass::readsFrom()), though an image is
-/// made that it belongs to: "the lens of camera 'main', 0.05 m wide", "no pass sees through a lens: the image
-/// is that of a pinhole". Nothing of a run without images.
+/// Traits of scene and camera that belong to the image but that no running pass reads (Pass::readsFrom()),
+/// such as "the lens of camera 'main', 0.05 m wide" with "no pass sees through a lens: the image is that of a
+/// pinhole". Empty for a run without images.
 std::vector<LeftOut> unreadTraits(const Seen& seen, const BoundGraph& graph, const PrunePlan& plan,
                                   const PruneRequest& request);
 

@@ -20,8 +20,8 @@ gpu::TextureDescription descriptionOf(const SurfaceTexture& source) {
   return description;
 }
 
-/// A surface texture with all mips; diffuse maps as rgba16f, since their linear values would lose the darks
-/// in 8 bits.
+/// A surface texture with all mip levels. Diffuse maps are rgba16f, because 8 bits of linear values lose dark
+/// tones.
 std::unique_ptr<gpu::Texture> upload(gpu::Device& device, const SurfaceTexture& source) {
   const gpu::TextureDescription description = descriptionOf(source);
   auto texture = std::make_unique<gpu::Texture>(device, description, source.name);
@@ -41,14 +41,14 @@ std::unique_ptr<gpu::Texture> upload(gpu::Device& device, const SurfaceTexture& 
 
 template <class T>
 std::unique_ptr<gpu::Buffer> bufferOf(gpu::Device& device, const std::vector<T>& values, const char* label) {
-  // A buffer of zero bytes is not allowed; one element stands in for an empty scene.
+  // OpenGL allows no buffer of zero bytes, so an empty scene has one element.
   const std::uint64_t size = std::max<std::size_t>(values.size(), 1) * sizeof(T);
   auto buffer = std::make_unique<gpu::Buffer>(device, size, label);
   if (!values.empty()) buffer->upload(std::as_bytes(std::span(values)));
   return buffer;
 }
 
-/// The same for what nothing ever writes to.
+/// The same for buffers that no shader writes.
 template <class T>
 std::shared_ptr<const gpu::Buffer> sharedBufferOf(gpu::Device& device, const std::vector<T>& values,
                                                   const char* label) {
@@ -79,7 +79,7 @@ bool deforms(const Scene& scene) {
 }  // namespace
 
 struct GpuScene::State {
-  /// Null while no vertex moves in its object's space; then these are the positions and normals.
+  /// Positions and normals of deforming objects; null while no vertex moves in object space.
   std::unique_ptr<gpu::Buffer> ownPositions, ownNormals;
   std::unique_ptr<gpu::Buffer> objects;
   std::shared_ptr<const gpu::Buffer> positions, normals, texcoords, indices, materials;

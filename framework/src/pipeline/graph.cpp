@@ -1,5 +1,5 @@
-// Binding: from the words of a pipeline text to passes, parameters and connections. Every finding is
-// collected; nothing is run.
+// Binds a pipeline text: its words become passes, parameters and connections. All findings are collected, and
+// nothing runs.
 #include "pipeline/graph.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ class Binder {
     report(value.place, value.length, std::move(what), std::move(expected), std::move(suggestion));
   }
 
-  /// Values given from outside the text (settings, sweep points) must fit as well.
+  /// Checks values from outside the text (settings, sweep points) as well.
   void checkValues() {
     for (const auto& [name, value] : values_) {
       const PipelineParameter* parameter = findParameter(pipeline_, name);
@@ -160,8 +160,8 @@ class Binder {
     }
   }
 
-  /// The one output of this kind that another pass has, as the text that would connect it; empty when there
-  /// is none or a choice.
+  /// The text that would connect the input to the only output of its kind; empty if there is none or more
+  /// than one.
   std::string offer(int reader, const InBase& input) const {
     std::string found;
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
@@ -208,7 +208,7 @@ class Binder {
     findings_.back().severity = Diagnostic::Severity::warning;
   }
 
-  /// Outputs of the right kind that hold something else than the input expects.
+  /// Warns of outputs of the right kind whose content is not what the input expects.
   void warnOfWrongLight(const dsl::Value& value, OutputIndex source, const InBase& input,
                         const std::string& pass) {
     const OutBase& output = graph_.output(source);
@@ -236,8 +236,8 @@ class Binder {
     return component == Contributes::nothing ? "no component of the image" : name(component);
   }
 
-  /// The only output in the pipeline that fits, or the only one of the same pass; empty when there is none or
-  /// a choice.
+  /// The only output in the pipeline that fits, or the only one of the same pass; empty if there is none or
+  /// more than one.
   template <class Fits>
   std::string only(OutputIndex near, const Fits& fits) const {
     for (const bool samePass : {true, false}) {
@@ -258,7 +258,7 @@ class Binder {
 
   // ---- connections ---------------------------------------------------------------------------------------
 
-  /// The kind that a reader asks for, and whether it takes another.
+  /// The kind that a reader expects, and whether it accepts others.
   struct Reader {
     const PortKind& kind;
     std::function<bool(const PortKind&)> takes;
@@ -288,7 +288,7 @@ class Binder {
       if (source < 0 && graph_.passes[i].name == passName) source = static_cast<int>(i);
     }
     if (source < 0) {
-      // Every reader of a pass that is not there follows from one mistake.
+      // All readers of a missing pass share one mistake, which is reported once.
       if (unknownReported_.insert(passName).second)
         report(place, length, fmt::format("unknown pass '{}'", passName), oneOf(names, "a pass"),
                suggestionFor(findings_, passName, names));
@@ -353,7 +353,7 @@ class Binder {
     if (pipeline_.outputs.empty()) requireNoImage();
   }
 
-  /// Only a pipeline that makes no part of an image has nothing to deliver.
+  /// A pipeline may lack outputs only if no pass makes a part of an image.
   void requireNoImage() {
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
       if (!graph_.passes[i].object) continue;
@@ -392,7 +392,7 @@ class Binder {
              oneOf(names, "a parameter declared with param"), suggestionFor(findings_, value.text, names));
       return;
     }
-    // Every value that a sweep will set must fit too, so that a report does not stop half-way.
+    // Values of sweeps are checked now, so that no report stops half-way.
     for (const Sweep& sweep : pipeline_.sweeps) {
       for (const auto& [name, values] : sweep.axes) {
         if (name != value.text) continue;
@@ -413,13 +413,13 @@ class Binder {
              fmt::format("'${}' is {}, which does not fit '{}'", value.text, chosen.text(), parameter.name()),
              misfitExpectation(misfit));
     }
-    // A pipeline hands all of its parameters on; those at the default of the pass state nothing.
+    // A pipeline passes on all of its parameters; a value equal to the pass's default counts as not stated.
     if (parameter.valueText() != parameter.defaultText())
       saidOf_[&parameter] = given == values_.end() ? Said::byText : Said::byCaller;
   }
 
-  /// What the text says gives way to `as_published` where the caller turned that on, and stands beside it
-  /// where the text did.
+  /// If the caller turned `as_published` on, it overrides values of the text. If the text did, stated values
+  /// stand beside it.
   void stateWhatIsSaid(Pass& pass) {
     Said form = Said::byText;
     for (const ParamBase* parameter : pass.parameters())
@@ -458,7 +458,8 @@ class Binder {
 
   // ---- order ---------------------------------------------------------------------------------------------
 
-  /// The sources of a pass in the same frame: a history is there before the frame begins.
+  /// The sources of a pass in the same frame. Histories are not among them: they exist before the frame
+  /// begins.
   std::vector<std::size_t> sourcesBefore(std::size_t index) const {
     std::vector<std::size_t> result;
     const BoundPass& bound = graph_.passes[index];
@@ -469,7 +470,7 @@ class Binder {
     return result;
   }
 
-  /// Sources before readers; of passes that may run, the first in the text. What is left over feeds itself.
+  /// Orders sources before readers, and in text order among equals. Passes left over form cycles.
   void schedule() {
     const std::size_t count = graph_.passes.size();
     std::vector<bool> done(count, false);
@@ -491,8 +492,8 @@ class Binder {
     }
   }
 
-  /// Follows sources that could not be scheduled until a pass comes up again: that is a cycle. Passes that
-  /// merely read one are on the way to it and get no finding of their own.
+  /// Follows unscheduled sources until a pass repeats: that is a cycle. Passes that only read a cycle get no
+  /// finding of their own.
   void reportCycle(std::size_t start, const std::vector<bool>& done, std::vector<bool>& explained) {
     std::vector<std::size_t> path;
     std::size_t at = start;
@@ -524,7 +525,7 @@ class Binder {
   const ParameterValues& values_;
   BoundGraph graph_;
   std::vector<Diagnostic> findings_;
-  /// Who gives a parameter of the pass that is bound its value; the later one has the last word.
+  /// The origin of a parameter's value; the later enumerator overrides.
   enum class Said { byText, byCaller };
   std::map<const ParamBase*, Said> saidOf_;
   std::set<std::string> missingReported_, unknownReported_;
@@ -565,7 +566,7 @@ MissingTechnique explainMissing(const TechniqueSource& techniques, const std::st
   const std::vector<std::string> available = techniques.available();
   std::vector<std::string> folders;
   for (const std::filesystem::path& folder : techniques.folders()) folders.push_back(folder.string());
-  // Most often a technique of one's own, built into a folder that no option names.
+  // The usual cause is a user's technique in a folder that no option names.
   return {folders.empty()
               ? fmt::format("unknown technique '{}'", name)
               : fmt::format("unknown technique '{}': no lib{}.so in {} (--techniques FOLDER adds one)", name,

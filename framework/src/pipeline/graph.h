@@ -1,4 +1,4 @@
-// A pipeline bound to the passes of its techniques: who reads what from whom.
+// A pipeline bound to the passes of its techniques, with the source of every input.
 #pragma once
 
 #include <memory>
@@ -43,9 +43,9 @@ struct BoundGraph {
   }
   /// "gather.diffuse"
   std::string outputText(OutputIndex index) const;
-  /// Index of a pass; Error that lists what there is, when there is no such pass.
+  /// Index of a pass. Error with the known names if there is no such pass.
   std::size_t findPass(const std::string& pass) const;
-  /// Error that lists what there is, when there is no such pass or port.
+  /// Error with the known names if there is no such pass or port.
   OutputIndex find(const std::string& pass, const std::string& port) const;
 };
 
@@ -56,7 +56,7 @@ BoundGraph bindPipeline(const Pipeline& pipeline, TechniqueSource& techniques, c
 /// Connects the inputs of all passes to their sources.
 void connectInputs(BoundGraph& graph);
 
-/// Technique of a source, or an Error-like explanation of why there is none: {what, expected, suggestion}.
+/// Why a technique is missing, as a finding says it: {what, expected, suggestion}.
 struct MissingTechnique {
   std::string what, expected, suggestion;
 };

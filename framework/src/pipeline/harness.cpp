@@ -9,7 +9,7 @@ namespace lumivox {
 
 namespace {
 
-/// Owns the outputs that stand in for the passes before the one under test.
+/// Owns outputs that replace the sources of the pass under test.
 class SourceHolder : public Pass {
  public:
   void run(PassContext&) override {}
@@ -24,7 +24,7 @@ struct PassHarness::State {
   std::string name;
   std::vector<std::unique_ptr<OutBase>> sources;
   bool accumulates = false;
-  int runs = 0;  ///< since it accumulates
+  int runs = 0;  ///< runs since accumulation began
 
   State(gpu::Device& device, const Scene& scene) : context(device, scene, false) {}
 };

@@ -80,7 +80,7 @@ void scanHealth(const std::string& pass, const OutBase& output, std::vector<std:
       }
       for (const Bad& kind : bad) {
         if (kind.count == 0) continue;
-        // Not by its label, which may stem from an earlier use of the same memory.
+        // Textures are not named by their labels, which may stem from an earlier use of the same memory.
         const std::string name = textures.size() > 1 ? fmt::format(" ({}, texture {} of {})", what.name,
                                                                    number + 1, textures.size())
                                                      : std::string();

@@ -1,4 +1,4 @@
-// Scan of a pass's output for values that no image may hold.
+// Scans the output of a pass for values that no image may hold.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace lumivox {
 
-/// Appends "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)" for each texture of the output that
-/// holds NaN or infinite values, or negative ones where the kind of port allows none.
+/// Appends a finding such as "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)" for each texture
+/// with NaN, infinite or, unless the kind of port allows them, negative values.
 void scanHealth(const std::string& pass, const OutBase& output, std::vector<std::string>& findings);
 
 }  // namespace lumivox

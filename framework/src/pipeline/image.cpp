@@ -1,4 +1,4 @@
-// From a texture to an image in main memory.
+// Reads textures back as images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ ImageBuffer imageOf(const OutBase& output) {
   const std::vector<gpu::TextureRef> textures = output.textures();
   if (textures.empty())
     throw Error(fmt::format("output '{}' of kind {} has no texture", output.name(), output.kind().name));
-  // One channel of what is a fraction.
+  // A fraction has one channel.
   const bool one = gpu::componentCount(textures.front()->description().format) < 3;
   ImageBuffer result = imageOf(*textures.front(), one ? 1 : channelsOf(output.contributes()));
   const auto* image = dynamic_cast<const Out<Image>*>(&output);

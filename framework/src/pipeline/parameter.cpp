@@ -23,7 +23,7 @@ std::string withUnit(const std::string& text, const std::string& unit) {
 std::string rangeText(const ParamBase& parameter) {
   if (parameter.type() == ParamBase::Type::integer)
     return fmt::format("{}..{}", parameter.low(), parameter.high());
-  // As floats, which is how they were given: 0.1f is written 0.1 and not 0.10000000149.
+  // Written as floats, as they were given: 0.1f is 0.1 and not 0.10000000149.
   const float low = static_cast<float>(parameter.low()), high = static_cast<float>(parameter.high());
   return withUnit(fmt::format("{}..{}", low, high), parameter.unit());
 }
@@ -42,7 +42,7 @@ void ParamBase::addPublishedForm(Pass* pass) {
 
 PublishedForm::PublishedForm(Pass* pass, std::string more)
     : Param<bool>(pass, "as_published", false, {}), pass_(*pass), more_(std::move(more)) {
-  if (pass->publishedForm_ != nullptr) {  // which a parameter before this one asked for
+  if (pass->publishedForm_ != nullptr) {  // added by an earlier parameter
     pass->parameters_.pop_back();
     pass->ownPublishedForm_.reset();
   }
@@ -121,7 +121,7 @@ Param<float>::Param(Pass* pass, std::string name, float value, ParamRange<float>
   assert(range.low <= value && value <= range.high);
   assert(!printed || (range.low <= printed->value && printed->value <= range.high));
   const auto& units = dsl::knownUnits();
-  // Its range and its value are in base units.
+  // Range and value are in base units.
   std::vector<std::string> names;
   for (const dsl::Unit& one : units)
     if (one.toBase == 1.0) names.emplace_back(one.name);

@@ -1,4 +1,4 @@
-// Memory of passes for later frames: results that are made once and kept, and histories.
+// The memory of passes across frames: results that are kept, and histories.
 #pragma once
 
 #include <map>
@@ -10,22 +10,22 @@
 
 namespace lumivox {
 
-/// Of all passes, by name. A run of a pass is between begin() and end(); what it left becomes what the next
-/// frame finds when the frame is committed.
+/// Memory of all passes, by name. A run of a pass lies between begin() and end(). Its histories become
+/// visible to the next frame when the frame is committed.
 class PassMemory {
  public:
   PassContext::Kept& kept(const std::string& pass, const std::string& what);
-  /// The histories of this frame: `current` as given, beside what the frame before left under the label.
+  /// The history of this frame: the given `current`, and what the previous frame left under the label.
   History<gpu::TextureRef> history(const std::string& pass, const std::string& label,
                                    gpu::TextureRef current);
   History<gpu::BufferRef> history(const std::string& pass, const std::string& label, gpu::BufferRef current);
 
   void beginRun(const std::string& pass);
-  /// Gives back what was kept and this run did not ask for.
+  /// Releases kept results that this run did not request.
   void endRun(const std::string& pass);
-  /// Hands what the frame left to the next one.
+  /// Passes the histories of this frame on to the next.
   void commitFrame();
-  /// The frame is rendered again, or failed: what it left is forgotten.
+  /// Drops the histories of this frame, which failed or is rendered again.
   void abandonFrame();
 
   void forgetKept();                         ///< of all passes
@@ -35,7 +35,7 @@ class PassMemory {
  private:
   struct OfPass {
     std::map<std::string, PassContext::Kept> kept;
-    std::set<std::string> asked;  ///< of what is kept, in this run
+    std::set<std::string> asked;  ///< kept results requested in this run
     std::map<std::string, gpu::TextureRef> textures, nextTextures;
     std::map<std::string, gpu::BufferRef> buffers, nextBuffers;
   };

@@ -40,12 +40,12 @@ template <class Resource>
 struct Slot {
   typename ShapeOf<Resource>::Type shape;
   std::string label;
-  const Resource* last;    ///< that it had; taken again where it waits
+  const Resource* last;    ///< its last resource, taken again if it is free
   std::uint64_t lastUsed;  ///< frame of the last request that it served
   gpu::Charge charge;
 };
 
-/// Things of textures and of buffers.
+/// A pair of containers, for textures and for buffers.
 template <template <class> class List>
 struct OfBoth {
   List<gpu::Texture> textures;
@@ -76,7 +76,7 @@ struct TransientMemory::State {
   std::vector<OfBoth<Slots>*> pools;
   OfBoth<Waiting> waiting;
 
-  /// One of this shape out of those that wait, `wanted` before others; null: none waits.
+  /// Takes a free resource of this shape, preferably `wanted`; null if none is free.
   template <class Resource, class Shape>
   std::unique_ptr<Resource> take(const Shape& shape, const Resource* wanted) {
     auto& all = waiting.of<Resource>();
@@ -96,7 +96,7 @@ struct TransientMemory::State {
     return std::make_unique<Resource>(device, shape, label);
   }
 
-  /// How many of this shape must wait: as many as the pool with the most slots of it.
+  /// The number of this shape to keep free: that of the pool with the most slots of it.
   template <class Resource, class Shape>
   std::size_t needed(const Shape& shape) const {
     std::size_t most = 0;
@@ -109,7 +109,7 @@ struct TransientMemory::State {
     return most;
   }
 
-  /// Frees what waits beyond what is needed, rather what no slot had last.
+  /// Frees unneeded resources, first those that no slot held last.
   template <class Resource>
   void trim() {
     auto& all = waiting.of<Resource>();
@@ -128,7 +128,7 @@ struct TransientMemory::State {
     all = std::move(kept);
   }
 
-  /// Makes what a pool took and holds, and others need.
+  /// Creates replacements for resources that a pool holds and others need.
   template <class Resource>
   void refill() {
     auto& all = waiting.of<Resource>();
@@ -183,7 +183,8 @@ struct ResourcePool::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Gives a resource back on its last reference. The pool may be gone before; others may then use it.
+  /// Returns a resource on its last reference. The pool may be destroyed before; others can then use the
+  /// resource.
   template <class Resource>
   struct Return {
     std::weak_ptr<State> pool;
@@ -203,12 +204,12 @@ struct ResourcePool::State {
     }
   };
 
-  /// A waiting resource of this shape, or a new one; on its last reference it waits again.
+  /// A free resource of this shape, or a new one; it becomes free again on its last reference.
   template <class Resource, class Shape>
   static std::shared_ptr<Resource> take(const std::shared_ptr<State>& state, const Shape& shape,
                                         const std::string& label) {
     auto& slots = state->slots.of<Resource>();
-    // Of several that fit, one that this frame has used already: the others may then be freed at its end.
+    // Prefers a resource that this frame has used already, so that the others can be freed at its end.
     auto best = slots.end();
     for (auto one = slots.begin(); one != slots.end(); ++one) {
       if (one->shape != shape || (!state->sharing && one->lastUsed == state->frame)) continue;

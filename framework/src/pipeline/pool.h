@@ -1,5 +1,5 @@
-// Textures and buffers for passes. What one pass no longer needs, another of the same shape gets: short-lived
-// resources share memory.
+// Textures and buffers for passes. Resources of the same shape are reused within a frame, so that short-lived
+// ones share memory.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace lumivox {
 
-/// Where resources wait that no request holds. The pools of executors of which only one renders at a time may
-/// have one between them: what all of them hold waiting is then there once. What a request holds (results
-/// that are kept, histories) is never another's.
+/// Holds the free resources of pools. Executors of which only one renders at a time may share it, so that
+/// their free resources exist once. A resource that a request holds (a kept result, a history) is never
+/// shared.
 class TransientMemory {
  public:
   explicit TransientMemory(gpu::Device& device);
@@ -27,8 +27,8 @@ class TransientMemory {
 
 class ResourcePool {
  public:
-  /// Without sharing, a resource serves one request per frame, and no other pool. Error when `memory` (null:
-  /// one of its own) is of another device.
+  /// Without sharing, a resource serves one request per frame, and no other pool. `memory`: null for one of
+  /// its own. Error if it belongs to another device.
   ResourcePool(gpu::Device& device, bool sharing, const std::shared_ptr<TransientMemory>& memory = nullptr);
   ~ResourcePool();
 
@@ -36,14 +36,14 @@ class ResourcePool {
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label);
 
   void beginFrame();
-  /// Frees what no request of this frame used and nobody holds (where `freesUnused`), and sees to it that
-  /// whoever renders next finds what it left waiting.
+  /// If `freesUnused`, frees what nobody holds and no request of this frame used. Keeps enough free resources
+  /// for the next executor that renders.
   void endFrame(bool freesUnused = true);
 
-  /// Of all its resources, in use or waiting: as many as if it had its memory alone.
+  /// Bytes of all its resources, in use or free, as if it shared no memory.
   std::uint64_t bytes() const;
   std::uint64_t sharedBytes()
-      const;  ///< requests of this frame that were served with memory which it had used before
+      const;  ///< bytes of requests that this frame served with memory that it had used before
 
  private:
   struct State;

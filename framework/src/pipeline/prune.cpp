@@ -12,7 +12,8 @@ constexpr std::uint32_t bits(Reads set) {
   return static_cast<std::uint32_t>(set);
 }
 
-/// Forward through the pipeline: what the scene can give a value other than the neutral element at all.
+/// Goes forward through the pipeline and finds the outputs that can differ from their neutral element in this
+/// scene.
 class Availability {
  public:
   Availability(const BoundGraph& graph, const PruneRequest& request, PrunePlan& plan)
@@ -85,8 +86,8 @@ std::vector<OutputIndex> inputsRead(const BoundPass& pass, const PruneRequest& r
   return result;
 }
 
-/// Why an output is not wanted: a reader that is kept and has no use for it, by its parameters or by what is
-/// wanted of it, or nobody.
+/// Why an output is not wanted: its kept reader does not use it with these parameters and wanted outputs, or
+/// it has no reader.
 std::string whyUnwanted(const BoundGraph& graph, const PrunePlan& plan, std::size_t pass, int port) {
   for (std::size_t reader = 0; reader < graph.passes.size(); ++reader) {
     const BoundPass& bound = graph.passes[reader];
@@ -115,8 +116,8 @@ void markWanted(const BoundGraph& graph, const PruneRequest& request,
   }
   for (const OutputIndex forced : request.forced) want(forced);
 
-  // Backward: a pass is kept when one of its outputs is wanted, and then wants its sources. A history may
-  // want an output of a later pass, which wants its own sources in a further round.
+  // Goes backward: a pass with a wanted output is kept and wants its sources. A history may want an output of
+  // a later pass, whose sources need another round.
   for (bool again = true; again;) {
     again = false;
     for (auto index = graph.order.rbegin(); index != graph.order.rend(); ++index) {
@@ -177,7 +178,8 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
       if (plan.output(source).wanted) plan.output(source).keep = true;
     }
   }
-  // A reader that something changes which leaves its source alone runs again without it.
+  // A reader may run again without its source, if a change affects the reader alone: the source's output must
+  // stay.
   for (const int index : plan.order) {
     const PassPlan& reader = plan.passes[static_cast<std::size_t>(index)];
     for (const OutputIndex source : sourcesRead(graph.passes[static_cast<std::size_t>(index)], request)) {

@@ -1,4 +1,4 @@
-// Which passes and outputs a scene needs, and why the others are left out.
+// Decides which passes and outputs a scene needs, and why the others are left out.
 #pragma once
 
 #include <string>
@@ -23,16 +23,16 @@ struct OutputPlan {
   bool wanted = false;      ///< computed and stored
   bool keep = false;        ///< must outlive the frame: a later frame may read it without running its pass
   bool impossible = false;  ///< the scene lacks what it or a pass before it needs
-  bool lacksNeed = false;   ///< the same of what it needs by itself
+  bool lacksNeed = false;   ///< the scene lacks what the output itself needs
   int lastReader = -1;      ///< position in PrunePlan::order after which it is no longer read
-  std::string why;          ///< when not wanted
+  std::string why;          ///< the reason if not wanted
 };
 
 struct PassPlan {
   bool kept = false;
-  std::string why;  ///< when not kept
+  std::string why;  ///< the reason if not kept
   std::vector<OutputPlan> outputs;
-  Reads dependsOn = Reads::nothing;  ///< what it and all of its kept sources read, histories among them
+  Reads dependsOn = Reads::nothing;  ///< reads of the pass and of all its kept sources, histories included
 };
 
 struct PrunePlan {
@@ -50,13 +50,12 @@ struct PrunePlan {
 
 PrunePlan prune(const BoundGraph& graph, const PruneRequest& request);
 
-/// Sources that a pass reads besides its inputs: those it declares, and histories where it has an input of
-/// that kind.
+/// What a pass reads besides its inputs: its declared reads, and Reads::history if it has a history input.
 Reads readsOf(const Pass& pass);
-/// Outputs that a pass reads of this frame: its connected inputs, without those that scene or parameters make
-/// useless.
+/// Outputs of this frame that a pass reads: its connected inputs but for those that the scene or the
+/// parameters make useless.
 std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request);
-/// The same of the frame before: inputs that are histories. None in a run that does not accumulate.
+/// Outputs of the previous frame that a pass reads by history inputs. Empty without accumulation.
 std::vector<OutputIndex> historiesRead(const BoundPass& pass, const PruneRequest& request);
 
 /// "geometry, camera"

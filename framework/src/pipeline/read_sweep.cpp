@@ -23,7 +23,7 @@ dsl::PropertySpecification listOf(const char* word, bool required, const char* m
   return specification;
 }
 
-/// The values of an axis of accumulated frames, as if it were a parameter of every pipeline.
+/// The axis of accumulated frames, described like a parameter that every pipeline has.
 PipelineParameter accumulatedFrames() {
   PipelineParameter frames;
   frames.name = kAccumulatedFrames;
@@ -33,7 +33,8 @@ PipelineParameter accumulatedFrames() {
   return frames;
 }
 
-/// A sum or product without the last digits that binary fractions leave: 0.3, not 0.30000000000000004.
+/// Rounds away the last digits that binary fractions leave in sums and products: 0.3, not
+/// 0.30000000000000004.
 double rounded(double value) {
   return std::stod(fmt::format("{:.12g}", value));
 }
@@ -155,7 +156,7 @@ class SweepReader : TextFindings {
   void requireFiles(const dsl::Block& block) {
     for (const char* word : {kSweptScenes, kSweptPipelines}) {
       if (std::find(words_.begin(), words_.end(), word) != words_.end()) continue;
-      // A misspelt word passed for a parameter.
+      // A misspelt word was read as a parameter.
       const std::string nearest = nearestWord(word, words_);
       const auto axis = std::find_if(sweep_.axes.begin(), sweep_.axes.end(),
                                      [&](const SweepAxis& one) { return one.parameter == nearest; });
@@ -213,7 +214,7 @@ class SweepReader : TextFindings {
       return report(values[1].place, values[1].length, "these steps never reach the upper end",
                     multiplies ? "a factor above 1, and a lower end above 0" : "a step above 0");
     const double steps = multiplies ? std::log(to / from) / std::log(step) : (to - from) / step;
-    constexpr double kLastDigits = 1e-9;  // an end that is a whole number of steps away belongs to it
+    constexpr double kLastDigits = 1e-9;  // an end within this share of a step belongs to the range
     if (!(steps < kMostValues))
       return report(property.place, property.word, "there are too many steps",
                     fmt::format("at most {}", kMostValues));
@@ -225,7 +226,7 @@ class SweepReader : TextFindings {
     }
   }
 
-  /// In a list a single value holds for all points; otherwise every axis has as many.
+  /// In a `list` sweep a single value holds for all points; all other axes have equally many values.
   void evenOut() {
     std::size_t points = 1;
     const SweepAxis* longest = nullptr;

@@ -7,15 +7,15 @@
 
 namespace lumivox {
 
-/// Where a sweep block stands: only a text of its own names scenes and pipelines.
+/// Where a sweep block stands. Only a sweep text of its own names scenes and pipelines.
 enum class SweepHome { pipeline, text };
 
 /// Reads one block and appends every finding in it.
 SweepBlock readSweepBlock(const dsl::Document& document, const dsl::Block& block, SweepHome home,
                           std::vector<Diagnostic>& findings);
 
-/// The sweep as far as it concerns a pipeline. Appends a finding for each value that does not fit its
-/// parameter. `lacking`: the axes whose parameters the pipeline does not have.
+/// The axes of a sweep that the pipeline has. Appends a finding for each value that does not fit its
+/// parameter. `lacking` receives the other axes.
 Sweep fittedSweep(const SweepBlock& block, const Pipeline& pipeline, const dsl::Document& document,
                   std::vector<Diagnostic>& findings, std::vector<const SweepAxis*>& lacking);
 

@@ -1,4 +1,4 @@
-// Texts of sweep blocks alone.
+// Texts that consist of sweep blocks.
 #include "lumivox/pipeline/sweep_text.h"
 
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ std::vector<SweepShare> sweepShares(const SweepText& text, TechniqueSource& tech
       std::vector<const SweepAxis*> lacking;
       SweepShare share{i, pipeline, fittedSweep(block, *pipeline, *text.document, findings, lacking)};
       for (const SweepAxis* axis : lacking) without[axis].push_back(pipeline->name);
-      // As if the sweep stood in the pipeline's own text: its values must fit the passes too.
+      // The values must also fit the passes, as in the pipeline's own text.
       Pipeline swept = *pipeline;
       swept.sweeps.push_back(share.sweep);
       collect([&] { checkPipeline(swept, techniques); });

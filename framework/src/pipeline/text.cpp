@@ -1,4 +1,4 @@
-// Pipeline texts: what needs no technique library.
+// Reads pipeline texts as far as that needs no technique library.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace lumivox {
 
 namespace {
 
-/// Passes, parameters, outputs and sweeps of one pipeline, each: far more than anybody writes, few enough
-/// that binding, which looks each up among all others, takes no time.
+/// Limit for the passes, parameters, outputs and sweeps of a pipeline, each: far above useful texts. Binding
+/// searches each among all others, which stays fast up to this number.
 constexpr std::size_t kMostOfAKind = 1000;
 
 dsl::PropertySpecification property(const std::string& word, dsl::PropertyType type,
@@ -61,7 +61,7 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
   return {pipeline, sweepSpecification(SweepHome::pipeline)};
 }
 
-/// Collects what one text says, and every finding in it.
+/// Collects the content of one text and every finding in it.
 class TextReader : TextFindings {
  public:
   TextReader(Pipeline& pipeline, const dsl::Document& document, std::vector<Diagnostic>& findings)
@@ -102,7 +102,7 @@ class TextReader : TextFindings {
     for (const dsl::Item& item : document_.items) {
       if (item.block && item.block->word == "sweep" && main != nullptr) readSweep(*item.block);
     }
-    // A pass that was refused may be the one that uses a parameter.
+    // A refused pass may use a parameter, so unused ones are reported only without findings.
     if (findings_.empty()) warnOfUnused();
   }
 
@@ -167,7 +167,7 @@ class TextReader : TextFindings {
     }
   }
 
-  /// Whether one more of a kind may follow; a finding at the first that may not.
+  /// Whether another item of a kind is allowed; reports the first that is not.
   template <class All>
   bool hasRoom(const All& all, const SourcePlace& place, const std::string& word) {
     if (all.size() < kMostOfAKind) return true;
@@ -177,7 +177,7 @@ class TextReader : TextFindings {
     return false;
   }
 
-  /// A parameter whose declaration was refused is known all the same.
+  /// Remembers a parameter whose declaration was refused, so that its uses get no finding.
   void noteRefused(const dsl::Property& property) {
     if (!property.values.empty() && property.values[0].isPlainWord())
       refusedParameters_.insert(property.values[0].text);
@@ -279,7 +279,7 @@ class TextReader : TextFindings {
   }
 
   void warnOfUnused() {
-    // A misspelt use has a finding of its own.
+    // A misspelt use has its own finding.
     for (const std::string& used : usedParameters_)
       if (findParameter(pipeline_, used) == nullptr) return;
     for (std::size_t i = 0; i < pipeline_.parameters.size(); ++i) {
@@ -294,7 +294,7 @@ class TextReader : TextFindings {
   Pipeline& pipeline_;
   std::vector<SourcePlace> parameterPlaces_;
   std::set<std::string> usedParameters_, refusedParameters_;
-  std::set<std::string> full_;  ///< words of which there are too many
+  std::set<std::string> full_;  ///< kinds of items that exceed their limit
 };
 
 Pipeline pipelineOf(dsl::Document parsed) {
@@ -409,7 +409,7 @@ std::string PipelineParameter::misfit(const ParameterValue& candidate) const {
     return value.word.empty() ? "must be a number" + range : "must be a word";
   }
   if (!candidate.word.empty()) return {};
-  // A number without unit is taken in base units, so only a different unit is wrong.
+  // A number without a unit is in base units, so only a unit of another dimension is wrong.
   if (candidate.dimension != dsl::Dimension{} && candidate.dimension != value.dimension) {
     return value.dimension == dsl::kNoDimension
                ? std::string("must be a number without a unit")
@@ -452,7 +452,7 @@ ParameterValues Pipeline::settings(const std::vector<std::string>& assignments) 
                               oneOf(names, "no setting, since it declares no parameters"),
                               nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
-    // The value is read by the one parser, so that units work as in the text.
+    // The text's own parser reads the value, so that units work alike.
     const dsl::Document parsed = dsl::parse("value " + text + "\n", "--set");
     std::optional<ParameterValue> value;
     if (parsed.findings.empty() && parsed.items.size() == 1 && parsed.items[0].property &&

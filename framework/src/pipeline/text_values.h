@@ -1,4 +1,4 @@
-// Common parts of the readers of pipelines, sweeps and published tables, and binding with them.
+// Common parts of the readers of pipelines, sweeps and published tables, and of binding.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@
 
 namespace lumivox {
 
-/// The part of a reader that notes what is wrong in its text.
+/// The part of a reader that collects findings.
 class TextFindings {
  protected:
   TextFindings(const dsl::Document& document, std::vector<Diagnostic>& findings)
       : document_(document), findings_(findings) {}
   void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
               std::string suggestion = {});
-  /// At a word as long as it is.
+  /// Reports a finding that underlines the whole word.
   void report(const SourcePlace& place, const std::string& word, std::string what, std::string expected = {},
               std::string suggestion = {});
 
@@ -26,8 +26,8 @@ class TextFindings {
   std::vector<Diagnostic>& findings_;
 };
 
-/// The file that a value names beside the text in which it is written; an included text has a folder of its
-/// own.
+/// The path of a file that a value names, relative to the text that contains the value; an included text has
+/// its own folder.
 std::filesystem::path besideText(const dsl::Value& value);
 
 /// "a.b" as (a, b); nothing for any other value.
