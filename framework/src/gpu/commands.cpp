@@ -81,7 +81,7 @@ struct Binder {
     const GLintptr offset = state.uniforms.write(bytes);
     bound.bytes.assign(bytes.begin(), bytes.end());
     bound.segmentSerial = state.uniforms.ring().segmentSerial();
-    // Drivers round the size of a block up to whole vec4; the ring has the room.
+    // Drivers round the size of a block up to whole vec4s; the ring has room for that.
     const std::size_t whole = (bytes.size() + 15) / 16 * 16;
     glBindBufferRange(GL_UNIFORM_BUFFER, slot.binding, state.uniforms.handle(), offset,
                       static_cast<GLsizeiptr>(whole));
@@ -119,7 +119,7 @@ void attach(GLuint framebuffer, GLenum point, const Texture& texture, int layer)
 
 void setRasterState(const RasterState& state, float depthBiasScale) {
   const auto enable = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
-  // Depth is written only while the test is on: without reading, it passes always.
+  // OpenGL writes depth only while the test is on; the function GL_ALWAYS writes without testing.
   enable(GL_DEPTH_TEST, state.depthTest || state.depthWrite);
   glDepthFunc(state.depthTest ? GL_LEQUAL : GL_ALWAYS);
   glDepthMask(state.depthWrite ? GL_TRUE : GL_FALSE);
@@ -218,7 +218,8 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
     state.check("choosing the render targets");
     if (status != GL_FRAMEBUFFER_COMPLETE)
       throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
-    // A device may take more samples than it is asked for, in other places (9.2.1). Mesa tells 0: nothing.
+    // A device may take more samples than requested, at other positions (OpenGL 4.5, 9.2.1). Mesa reports 0,
+    // which says nothing.
     if (targets.samples > 1) {
       GLint samples = 0;
       glGetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
@@ -241,7 +242,7 @@ std::optional<GLuint> FramebufferCache::find(const FramebufferKey& key) const {
 }
 
 void FramebufferCache::keep(const FramebufferKey& key, GLuint framebuffer) {
-  constexpr std::size_t kMost = 4096;  // some for each layer of the largest arrays
+  constexpr std::size_t kMost = 4096;  // several for each layer of the largest arrays
   if (framebuffers_.size() >= kMost) clear();
   framebuffers_.emplace(key, framebuffer);
 }
@@ -249,8 +250,8 @@ void FramebufferCache::keep(const FramebufferKey& key, GLuint framebuffer) {
 void FramebufferCache::forget(GLuint texture) {
   std::erase_if(framebuffers_, [texture](const auto& one) {
     const auto& [key, framebuffer] = one;
-    // Handles are at the even places. Behind them, one without targets has its size: at worst it is made
-    // again.
+    // Handles are at even indices. A framebuffer without targets has its size behind them: a false match only
+    // makes it again.
     bool uses = false;
     for (std::size_t i = 0; i < key.size(); i += 2) uses = uses || key[i] == std::int64_t{texture};
     if (uses) glDeleteFramebuffers(1, &framebuffer);
@@ -268,7 +269,8 @@ void DeviceState::bind(const Program& program, std::span<const ResourceBinding> 
     cache.program = program.handle();
     glUseProgram(cache.program);
   }
-  // Room for all of them first: a block that was bound already lies in the segment that may have to be left.
+  // Room for all blocks is reserved first: blocks that are already bound must not lie in a segment that the
+  // ring then leaves.
   std::size_t room = 0;
   for (const ResourceBinding& binding : bindings) {
     if (const auto* uniform = std::get_if<ResourceBinding::Uniform>(&binding.resource))
@@ -369,7 +371,7 @@ Drawing::~Drawing() {
   device_->use();
   assert(device_->drawing);
   device_->drawing = false;
-  // So that no later command finds its textures attached.
+  // No later command must find its textures attached.
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
@@ -380,7 +382,7 @@ std::vector<glm::vec2> Device::samplePositions(int samples) {
   if (samples < 1 || samples > state.info.maxSamples) refuseSamples(state, samples);
   std::vector<glm::vec2> positions(static_cast<std::size_t>(samples), glm::vec2(0.5f));
   if (samples == 1) return positions;
-  // Drivers tell them of a framebuffer with something to draw to; they are the same without.
+  // Drivers report them for a framebuffer with an attachment; the values hold without one too.
   GLuint framebuffer = 0, target = 0;
   glCreateRenderbuffers(1, &target);
   glNamedRenderbufferStorageMultisample(target, samples, GL_RGBA8, 1, 1);

@@ -12,7 +12,7 @@
 namespace lumivox::gpu {
 namespace {
 
-/// Whose context is current on this thread; null: none's.
+/// The context that is current on this thread; null if none is.
 thread_local const Context* currentContext = nullptr;
 
 std::string eglErrorName() {
@@ -36,7 +36,7 @@ std::string eglErrorName() {
   }
 }
 
-/// Empty, or why the dynamic loader cannot open it. What can be opened stays open, as epoxy would have it.
+/// Why the dynamic loader cannot open the library, or empty. An opened library stays open, as with epoxy.
 std::string whyNotOpened(const char* library) {
   if (dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr) return {};
   const char* reason = dlerror();
@@ -47,7 +47,7 @@ std::string whyNotOpened(const char* library) {
 void requireLibraries() {
   if (const std::string why = whyNotOpened("libEGL.so.1"); !why.empty())
     throw AbsentError("no OpenGL: libEGL.so.1 (Debian package libegl1) cannot be opened: " + why);
-  // epoxy takes the functions of OpenGL from either.
+  // epoxy loads the functions of OpenGL from either library.
   if (const std::string why = whyNotOpened("libOpenGL.so.0");
       !why.empty() && !whyNotOpened("libGL.so.1").empty())
     throw AbsentError(
@@ -81,8 +81,8 @@ std::vector<EglDevice> eglDevices() {
   if (!eglQueryDevicesEXT(0, nullptr, &count) || count <= 0) return devices;
   std::vector<EGLDeviceEXT> handles(static_cast<std::size_t>(count));
   if (!eglQueryDevicesEXT(count, handles.data(), &count)) return devices;
-  // What a device says of itself is an extension of its own; without it the renderer's name tells, once there
-  // is a context.
+  // The extension that describes a device may be missing. Then the renderer's name tells, once there is a
+  // context.
   const bool tells = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") ||
                      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base");
   for (EGLint i = 0; i < count; ++i) {
@@ -93,8 +93,8 @@ std::vector<EglDevice> eglDevices() {
   return devices;
 }
 
-/// With what EGL 1.5 calls robustness where the driver has it: a context that tells of a reset, and in a
-/// debug context accesses beyond a resource that are defined (they cost time, so others go without).
+/// Requests robustness (EGL 1.5) if the driver has it: the context reports resets. In a debug context,
+/// accesses beyond a resource are defined too; they cost time, so other contexts go without.
 EGLContext createContext(EGLDisplay display, EGLConfig config, bool debug) {
   std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                  4,
@@ -179,7 +179,7 @@ Context::Context(const std::string& request, bool debug) : debug_(debug) {
   if (request == "auto" || request == "software") {
     const bool wantSoftware = request == "software";
     for (std::size_t i = 0; i < devices.size(); ++i) {
-      // Mesa's software device comes after the surfaceless platform, which is the older and better tried
+      // The surfaceless platform is preferred to Mesa's software device: it is the older and better tested
       // path.
       if (wantSoftware || devices[i].software) continue;
       if (!tryDisplay(deviceDisplay(devices[i]), platformOf(i), failures)) continue;

@@ -1,5 +1,5 @@
-// Numbers that OpenGL gives with fewer bits than they are kept in. No OpenGL here, so that no driver is
-// needed to test it.
+// Numbers that OpenGL returns with fewer bits than they are stored in. Without OpenGL, so that tests need no
+// driver.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ constexpr std::uint64_t countedBetween(std::uint64_t begin, std::uint64_t end, i
 /// Whole rows of consecutive slices, or of one slice alone.
 struct Rows {
   int firstSlice = 0, slices = 0, firstRow = 0, rows = 0;
-  std::uint64_t offset = 0, bytes = 0;  ///< where they lie in memory that holds all
+  std::uint64_t offset = 0, bytes = 0;  ///< their place in memory that holds all
 };
 
-/// All rows of all slices in parts of at most `mostBytes`, in the order of memory, and as few of them as
-/// there can be: whole slices where one fits, else whole rows. A row has to fit.
+/// All rows of all slices in as few parts of at most `mostBytes` as possible, in the order of memory: whole
+/// slices if one fits, else whole rows. Precondition: a row fits.
 std::vector<Rows> partsOf(int slices, int rows, std::uint64_t rowBytes, std::uint64_t mostBytes);
 
 }  // namespace lumivox::gpu

@@ -1,5 +1,6 @@
-// The unit of a constant depth bias. OpenGL leaves it to the driver (4.5, 14.6.5), and two drivers on one
-// rasteriser have units that differ by 2: what lies at the edge of a shadow is lit by one of them alone.
+// Measures the unit of a constant depth bias. OpenGL leaves it to the driver (4.5, 14.6.5), and the units of
+// two drivers on one rasteriser differ by a factor of 2: a point at the edge of a shadow would be lit with
+// one of them alone.
 #include <cassert>
 #include <cmath>
 
@@ -9,7 +10,7 @@ namespace lumivox::gpu {
 namespace {
 
 constexpr float kDepth = 0.5f;
-constexpr double kUnit = 0x1p-24;       // the least difference of 32-bit depths from kDepth on
+constexpr double kUnit = 0x1p-24;       // the smallest difference of 32-bit depths from kDepth on
 constexpr float kUnitsAsked = 4096.0f;  // exact in the depth that comes out, whatever the driver's unit
 
 constexpr const char* kWholeTarget = R"(#version 450 core

@@ -184,7 +184,7 @@ void DeviceState::makeSamplers() {
 }
 
 void DeviceState::requireContext(const std::string& what, bool errorTold) {
-  // A driver may tell of the reset while it lasts and then no more, but the context stays lost.
+  // A driver may report a reset only while it lasts, but the context stays lost.
   const GLenum status = tellsResets || errorTold ? glGetGraphicsResetStatus() : GL_NO_ERROR;
   if (status != GL_NO_ERROR || errorTold)
     lost = lost.value_or(status == GL_GUILTY_CONTEXT_RESET     ? Reset::own
@@ -196,7 +196,7 @@ void DeviceState::requireContext(const std::string& what, bool errorTold) {
 }
 
 void DeviceState::check(const std::string& what) {
-  // A debug context has told of it already, and says more.
+  // A debug context has already reported the error, in more detail.
   GLenum error = glGetError();
   requireContext(what, error == GL_CONTEXT_LOST);
   if (error != GL_NO_ERROR && !messages.hasErrors())
@@ -207,7 +207,7 @@ void DeviceState::check(const std::string& what) {
   if (messages.hasErrors()) throw Error(messages.takeErrors(what));
 }
 
-/// Below this, asking the system for what is left costs more than it tells.
+/// Below this size, asking the system for the free memory costs more than it is worth.
 constexpr std::uint64_t kNotWorthAsking = 16 << 20;
 
 void DeviceState::requireHostMemory(std::uint64_t bytes, const std::string& label) {
@@ -220,7 +220,7 @@ std::string DeviceState::besideText() const {
 
 void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& what) {
   const auto refuse = [&](std::uint64_t available, const std::string& where) {
-    // Rounded, the two may read the same.
+    // After rounding, both sizes may read the same.
     const bool alike = formatBytes(bytes) == formatBytes(available);
     const auto text = [&](std::uint64_t count) {
       return alike ? fmt::format("{} B", count) : formatBytes(count);
@@ -276,8 +276,8 @@ void DeviceState::forgetBindings() {
 // ------------------------------------------------------------------------------------------------
 
 void UniformBuffer::create(std::size_t alignment) {
-  // Room for the blocks of some thousand draws in a segment, and for many times the largest block that OpenGL
-  // promises, 16 KiB.
+  // A segment has room for the blocks of some thousand draws, and for many blocks of 16 KiB, the largest that
+  // OpenGL promises.
   constexpr std::size_t kSegmentBytes = 1 << 20;
   ring_.emplace(*this, kSegmentBytes, std::max<std::size_t>(alignment, 16));
   glCreateBuffers(1, &buffer_);
@@ -354,7 +354,7 @@ void Device::enterPass(const std::string& name) {
 
 void Device::leavePass() {
   state_->use();
-  // Also when the check throws, what follows is no longer this pass.
+  // Leaves the pass even if the check throws.
   struct Leave {
     DeviceState& state;
     ~Leave() { state.pass.clear(); }

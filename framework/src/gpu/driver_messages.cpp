@@ -7,7 +7,7 @@
 namespace lumivox::gpu {
 
 void DriverMessages::addError(std::string text) {
-  constexpr std::size_t kKept = 8;  // the first ones explain the others
+  constexpr std::size_t kKept = 8;  // the first messages explain the others
   if (errors_.size() < kKept) errors_.push_back(std::move(text));
 }
 
@@ -24,7 +24,7 @@ void DriverMessages::hear(Kind kind, Severity severity, unsigned source, unsigne
       logDetails("the OpenGL driver says{}: {}", where, text);
     }
   } catch (...) {
-    // Out of memory while noting what the driver said: the next command will tell.
+    // Out of memory while a message was stored: the next command reports it.
   }
 }
 

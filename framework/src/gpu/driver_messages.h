@@ -1,5 +1,4 @@
-// Messages of the driver while commands run. No OpenGL here, so that it can be tested without a driver that
-// speaks.
+// Messages of the driver while commands run. Without OpenGL, so that tests need no driver that sends any.
 #pragma once
 
 #include <set>
@@ -9,13 +8,13 @@
 
 namespace lumivox::gpu {
 
-/// Errors wait until somebody throws them; everything else is advice, which is logged once each.
+/// Stores errors until a caller throws them. All other messages are advice, and each is logged once.
 class DriverMessages {
  public:
   enum class Kind { error, undefinedBehaviour, advice };
   enum class Severity { notification, low, high };
-  /// `source` and `id` tell one piece of advice from another, whatever buffer or program its text names. May
-  /// be called by the driver, through which no exception may pass: it throws nothing.
+  /// `source` and `id` identify a piece of advice, whatever buffer or program its text names. The driver
+  /// calls this function, and no exception may pass through it: it throws nothing.
   void hear(Kind kind, Severity severity, unsigned source, unsigned id, std::string text,
             const std::string& pass) noexcept;
 
@@ -30,10 +29,10 @@ class DriverMessages {
   std::set<std::tuple<Kind, unsigned, unsigned>> told_;
 };
 
-/// Why a context was lost, as the driver tells it (OpenGL 4.5, 2.3.2): this process's own commands, somebody
-/// else's, or nobody knows.
+/// Why a context was lost, as the driver reports it (OpenGL 4.5, 2.3.2): by this process's commands, by those
+/// of another, or for an unknown reason.
 enum class Reset { own, others, unknown };
-/// "the OpenGL context is lost: ..."; the pass is the one under way, empty for none.
+/// "the OpenGL context is lost: ..."; `pass`: the running pass, empty for none.
 std::string lostContextText(Reset reset, const std::string& pass);
 
 }  // namespace lumivox::gpu

@@ -1,4 +1,5 @@
-// Whose bytes textures and buffers are, and read-only ones that exist once for all who want the same bits.
+// Accounts of the bytes of textures and buffers, and read-only resources that exist once for all holders of
+// the same contents.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +12,18 @@
 
 namespace lumivox::gpu {
 
-/// Bytes of one owner's textures and buffers, as if it were alone on the device: what it shares with others
-/// counts in full, and what only others hold does not.
+/// Bytes of one owner's textures and buffers, as if it were alone on the device: shared resources count in
+/// full, and resources of others do not count.
 class MemoryAccount {
  public:
   std::uint64_t bytes() const { return bytes_; }
-  std::uint64_t sharedBytes() const { return sharedBytes_; }  ///< of bytes(): from sharedResource()
+  std::uint64_t sharedBytes() const { return sharedBytes_; }  ///< the part of bytes() from sharedResource()
   std::uint64_t peakBytes() const { return peakBytes_; }      ///< since resetPeak()
   void resetPeak() { peakBytes_ = bytes_; }
 
   void add(std::uint64_t bytes);
   void remove(std::uint64_t bytes);
-  /// The same for something that others may hold too; asked for twice, it counts once.
+  /// The same for a resource that others may hold too; held twice by one owner, it counts once.
   void hold(const void* shared, std::uint64_t bytes);
   void release(const void* shared, std::uint64_t bytes);
 
@@ -31,8 +32,8 @@ class MemoryAccount {
   std::map<const void*, int> holds_;
 };
 
-/// While it lives, what is allocated on a device is charged to an account (null: to none), and taken off it
-/// when it is freed, whenever that is.
+/// While it lives, allocations on a device are charged to an account (null: to none). They leave the account
+/// when they are freed, also later.
 class Charging {
  public:
   Charging(Device& device, std::shared_ptr<MemoryAccount> account);
@@ -45,7 +46,7 @@ class Charging {
   std::shared_ptr<MemoryAccount> before_;
 };
 
-/// Bytes on the account that is charged when it is made, as long as it lives.
+/// Charges bytes to the current account for as long as it lives.
 class Charge {
  public:
   Charge(Device& device, std::uint64_t bytes);
@@ -58,9 +59,9 @@ class Charge {
   std::uint64_t bytes_ = 0;
 };
 
-/// The resource of a device with these contents: made when nobody holds one, else the one that is there. It
-/// is freed with its last holder. What `make` throws leaves nothing behind. `contents` stands for every bit
-/// and the shape; whoever holds it never writes to it.
+/// The resource of a device with these contents: the existing one, or the result of `make` if nobody holds
+/// one. It is freed with its last holder. If `make` throws, nothing is left behind. `contents` identifies
+/// every bit and the shape. Holders never write to it.
 template <class Resource>
 std::shared_ptr<const Resource> sharedResource(Device& device, const ContentHash& contents,
                                                const std::function<std::unique_ptr<Resource>()>& make);

@@ -95,7 +95,7 @@ std::string infoLog(GLuint handle, bool program) {
 }
 
 void specialise(GLuint shader, const StageCode& code, std::span<const SpecialisationValue> constants) {
-  // Only ids that this stage still has may be named; others are an error in OpenGL.
+  // OpenGL allows only ids that this stage still has.
   const auto known = specialisationConstants(code.spirv);
   std::vector<GLuint> ids, values;
   for (const SpecialisationValue& constant : constants) {
@@ -128,7 +128,7 @@ void compileText(GLuint shader, const StageCode& code, std::span<const Specialis
   glCompileShader(shader);
 }
 
-/// The name is part of it, since messages tell it.
+/// The name is hashed too, since messages contain it.
 ContentHash contentsOf(const std::string& name, std::span<const StageCode> stages,
                        std::span<const SpecialisationValue> constants) {
   Hasher hasher;
@@ -170,7 +170,7 @@ void ProgramCache::keep(const ContentHash& contents, const Linked& linked) {
 }
 
 bool ProgramCache::release(GLuint handle) {
-  constexpr std::size_t kMostWaiting = 512;  // all pipelines of the tree together need fewer
+  constexpr std::size_t kMostWaiting = 512;  // more than all committed pipelines together need
   Entry& entry = entries_.at(handle);
   if (--entry.holders > 0) return false;
   entry.waitsSince = ++releases_;

@@ -15,8 +15,8 @@ namespace {
     limit, axis, #limit "[" #axis "]", least, promised, why          \
   }
 
-// Every limit that the committed shaders come near to or depend on (a test reads it from the packs), with
-// room for some more. Of storage buffers and of what a program writes to OpenGL 4.5 promises less.
+// Every limit that the committed shaders depend on or come near to, with some reserve; a test reads their
+// needs from the packs. OpenGL 4.5 promises fewer storage buffers and written resources.
 constexpr Requirement kRequirements[] = {
     LUMIVOX_REQUIREMENT(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 16, 8, "storage buffers bound at a time"),
     LUMIVOX_REQUIREMENT(GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS, 16, 8, "storage buffers of a program"),

@@ -13,12 +13,12 @@ struct Requirement {
   int index;           ///< negative: the limit is one number
   const char* name;    ///< with its index in brackets
   std::int64_t least;
-  std::int64_t promised;  ///< by OpenGL 4.5 of every device (tables 23.53 to 23.74)
+  std::int64_t promised;  ///< the minimum of every OpenGL 4.5 device (tables 23.53 to 23.74)
   const char* why;
 };
 std::span<const Requirement> requirements();
 
-/// "GL_MAX_... is 0, and 8 are needed: why" for every limit that is too low, a line each; empty when none is.
+/// A line such as "GL_MAX_... is 0, and 8 are needed: why" for every limit that is too low; empty if none is.
 std::string unmetRequirements(const std::function<std::int64_t(const Requirement&)>& valueOf);
 
 }  // namespace lumivox::gpu

@@ -1,4 +1,4 @@
-// The OpenGL side of a Device: what the files of this part share. Nothing outside framework/src/gpu includes
+// The OpenGL side of a Device, which the files of this part share. Nothing outside framework/src/gpu includes
 // it.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace lumivox::gpu {
 
-/// How OpenGL names a Format.
+/// A Format in the terms of OpenGL.
 struct FormatTraits {
   GLenum internal;  ///< sized internal format
   GLenum external;  ///< layout of the components in memory
@@ -32,19 +32,19 @@ struct FormatTraits {
 };
 const FormatTraits& traitsOf(Format format);
 
-/// A program of the device's own, from GLSL texts that every driver takes: of each stage the pieces of its
-/// text.
+/// Links a program for the device's own use from GLSL texts that every driver accepts: for each stage, the
+/// pieces of its text.
 GLuint linkProgram(std::initializer_list<std::pair<GLenum, std::vector<const char*>>> stages);
 
 /// An OpenGL 4.5 core context without a display.
 class Context {
  public:
-  /// AbsentError when nothing on this machine meets the request; Error when the request makes no sense.
+  /// AbsentError if no device of this machine meets the request; Error if the request is invalid.
   Context(const std::string& request, bool debug);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
-  /// Error where the driver refuses.
+  /// Error if the driver refuses.
   void makeCurrent() const;
   bool tryMakeCurrent() const noexcept;
   const std::string& platform() const { return platform_; }
@@ -70,7 +70,7 @@ class UniformBuffer : public UniformRing::Fences {
   void create(std::size_t alignment);
   void destroy();
   UniformRing& ring() { return *ring_; }
-  /// Copies a block to the next place in the ring; its offset.
+  /// Copies a block to the next place in the ring and returns its offset.
   GLintptr write(std::span<const std::byte> block);
   GLuint handle() const { return buffer_; }
 
@@ -84,16 +84,17 @@ class UniformBuffer : public UniformRing::Fences {
   std::array<GLsync, UniformRing::kSegments> fences_{};
 };
 
-/// The targets of a framebuffer: handle and layer of each colour target and of depth, and the size and
-/// samples of one without targets. Words, so that it is compared as a whole.
+/// Identifies a framebuffer: handle and layer of each colour target and of depth; without targets, size and
+/// samples. Plain words, so that keys compare as a whole.
 using FramebufferKey = std::vector<std::int64_t>;
 
-/// Framebuffers that were made and checked before.
+/// Framebuffers that were already made and checked.
 class FramebufferCache {
  public:
   std::optional<GLuint> find(const FramebufferKey& key) const;
   void keep(const FramebufferKey& key, GLuint framebuffer);
-  /// A texture dies: no framebuffer may keep it, nor be taken for one with the next texture of its name.
+  /// Call it when a texture is deleted: no framebuffer may keep it or be mistaken for one with the next
+  /// texture of the same name.
   void forget(GLuint texture);
   void clear();
   std::size_t size() const { return framebuffers_.size(); }
@@ -102,21 +103,20 @@ class FramebufferCache {
   std::map<FramebufferKey, GLuint> framebuffers_;
 };
 
-/// Linked programs by what they were made of. Who asks for the same again, beside the first or after it, gets
-/// the linked one: each executor has passes of its own, and a driver takes longer to link than to run many of
-/// them.
+/// Linked programs by their contents. A second request for the same contents, at the same time or later, gets
+/// the linked program: each executor has its own passes, and linking often takes longer than running.
 class ProgramCache {
  public:
   struct Linked {
     GLuint handle = 0;
     glm::ivec3 groupSize{0};
   };
-  /// With one more holder; none when it is not there.
+  /// Adds a holder; nothing if the program is not there.
   std::optional<Linked> hold(const ContentHash& contents);
-  /// A new one, with its first holder.
+  /// Adds a new program with its first holder.
   void keep(const ContentHash& contents, const Linked& linked);
-  /// One holder less. What nobody holds waits for the next who asks, and goes when too many wait: the one
-  /// that has waited longest. Whether one went, whose name may then be another's.
+  /// Removes a holder. A program without holders stays for the next request; if too many stay, the oldest is
+  /// deleted. Returns whether one was deleted: its name may then be reused.
   bool release(GLuint handle);
   void clear();
 
@@ -133,7 +133,7 @@ class ProgramCache {
   std::uint64_t releases_ = 0;
 };
 
-/// The current bindings, so that a draw binds only what differs from the one before.
+/// The current bindings, so that a draw binds only differences from the previous one.
 struct BindingCache {
   struct Sampled {
     GLuint texture = 0, sampler = 0;
@@ -153,7 +153,7 @@ struct BindingCache {
   std::vector<Uniform> uniforms;
 };
 
-/// Read-only resources by their contents, as long as somebody holds them.
+/// Read-only resources by their contents, while they have holders.
 template <class Resource>
 using SharedResources = std::map<ContentHash, std::weak_ptr<const Resource>>;
 
@@ -163,32 +163,33 @@ struct DeviceLimits {
   GLint uniformBlockBytes = 0, uniformAlignment = 256;
   std::array<GLint, 3> groupCount{};
   GLint sampledUnits = 0, imageUnits = 0, storageUnits = 0, uniformUnits = 0;
-  GLint timestampBits = 0;  ///< of the counter behind time stamps; 0: there are none
-  std::uint64_t downloadBytes = std::numeric_limits<GLsizei>::max();  ///< of a texture, by one command
+  GLint timestampBits = 0;  ///< bits of the counter behind time stamps; 0: the device has none
+  std::uint64_t downloadBytes =
+      std::numeric_limits<GLsizei>::max();  ///< most bytes of a texture that one command downloads
 };
 
 struct DeviceState {
   explicit DeviceState(const DeviceOptions& options);
   ~DeviceState();
 
-  /// Makes the context current when another Device was used last on this thread.
+  /// Makes the context current if another Device was used last on this thread.
   void use() { context.makeCurrent(); }
-  /// The same for destructors. False: the context is lost, or cannot be made current, and what it held is
-  /// gone with it, so that there is nothing to release.
+  /// The same for destructors. False if the context is lost or cannot be made current: its resources are gone
+  /// with it, and there is nothing to release.
   bool useToRelease() noexcept { return !lost && context.tryMakeCurrent(); }
-  /// Throws what the driver complained about since the last check, naming `what` was being done. Without a
-  /// debug context it must ask for that, for which a driver that works on another thread is waited for.
+  /// Throws the driver's errors since the last check; `what` names the work. Without a debug context this
+  /// queries the driver and waits for one that works on another thread.
   void check(const std::string& what);
-  /// The same for what it told of its own accord, which costs nothing: for every draw.
+  /// The same for errors that the driver reported by itself. It costs nothing and is called for every draw.
   void checkTold(const std::string& what) {
     if (messages.hasErrors()) check(what);
   }
-  /// Throws when the context was lost, of which the driver may have told by an error (GL_CONTEXT_LOST).
+  /// Throws if the context is lost. `errorTold`: the driver reported GL_CONTEXT_LOST.
   void requireContext(const std::string& what, bool errorTold);
-  /// Refuses an allocation that does not fit into what the device has left, or into its limit together with
-  /// what is held already.
+  /// Throws Error if an allocation exceeds the free memory of the device or, with the present allocations,
+  /// its limit.
   void requireDeviceMemory(std::uint64_t bytes, const std::string& what);
-  /// Refuses to copy so many bytes of a resource to the host when they do not fit there.
+  /// Throws Error if a copy of so many bytes does not fit into the host's memory.
   static void requireHostMemory(std::uint64_t bytes, const std::string& label);
   /// " beside the 1.5 GiB of all other textures and buffers"
   std::string besideText() const;
@@ -196,31 +197,31 @@ struct DeviceState {
   void allocated(const void* resource, std::uint64_t bytes);
   void freed(const void* resource, std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
-  /// Before a command that moves or fills: makes what shaders wrote visible to it, unless a barrier did so
-  /// already.
+  /// Call it before a copy or clear: makes the writes of shaders visible to it, unless a barrier already did.
   void order();
-  /// Deleting a resource unbinds it and frees its name for reuse: what the cache remembers is void.
+  /// Call it when a resource is deleted: OpenGL unbinds it and may reuse its name, so cached bindings are
+  /// invalid.
   void forgetBindings();
   /// Compares timer queries with the fenced clock, once.
   void checkTimers();
-  /// What a depth bias in units of 2^(e - 23), e the exponent of the depth, is multiplied by for this driver,
-  /// which has a unit of its own. Found once; not while something is drawn.
+  /// The factor from a depth bias in units of 2^(e - 23), e the exponent of the depth, to this driver's unit.
+  /// Measured once, by a draw of its own.
   float depthBiasScale();
 
   Context context;
   DeviceInfo info;
   ShaderInput shaderInput = ShaderInput::glsl;
   DeviceLimits limits;
-  const std::uint64_t memoryBytes;  ///< limit of allocatedBytes; 0: none but the device's own
+  const std::uint64_t memoryBytes;  ///< limit of allocatedBytes; 0: the device's own
   std::string pass;
   const bool debug;             ///< a debug context
-  bool tellsResets = false;     ///< the context was made to tell when the device was reset
+  bool tellsResets = false;     ///< the context reports resets of the device
   std::optional<Reset> lost{};  ///< the context is
   const Arithmetic arithmetic;
   DriverMessages messages;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
-  std::shared_ptr<MemoryAccount> account;  ///< charged for what is allocated now; null: none
-  std::unordered_map<const void*, std::shared_ptr<MemoryAccount>> charged;  ///< by resource that is alive
+  std::shared_ptr<MemoryAccount> account;  ///< charged for allocations; null: none
+  std::unordered_map<const void*, std::shared_ptr<MemoryAccount>> charged;  ///< by live resource
   SharedResources<Texture> sharedTextures;
   SharedResources<Buffer> sharedBuffers;
   Device::Transfers transfers;
@@ -229,10 +230,10 @@ struct DeviceState {
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;
   bool drawing = false;
-  bool unordered = false;  ///< shaders ran since the last barrier, and may have written
+  bool unordered = false;  ///< shaders that may write ran since the last barrier
   FramebufferCache framebuffers;
   ProgramCache programs;
-  FramebufferKey framebufferKey;  ///< of the last drawing; a member for its memory
+  FramebufferKey framebufferKey;  ///< of the last draw; a member to reuse its memory
   UniformBuffer uniforms;
   BindingCache cache;
   bool timersChecked = false;

@@ -90,7 +90,7 @@ void uploadAs(GLuint handle, const TextureDescription& d, int level, GLenum type
   }
 }
 
-/// The size argument of OpenGL has 31 bits: in parts where all together are more.
+/// Downloads in parts, since the size argument of OpenGL has 31 bits.
 void downloadSlicesAs(GLuint handle, const TextureDescription& d, int level, GLenum type, int first,
                       int count, void* data, std::size_t sizeBytes, std::uint64_t mostBytes) {
   const Extent e = extentOf(d, level);

@@ -1,4 +1,4 @@
-// Device times, and whether this driver's timer queries deserve belief.
+// Measures device times, and whether this driver's timer queries can be trusted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Between two time stamps; waits for both.
+/// Time between two time stamps, ms; waits for both.
 double elapsedMs(GLuint first, GLuint second, GLint timestampBits) {
   GLuint64 begin = 0, end = 0;
   glGetQueryObjectui64v(first, GL_QUERY_RESULT, &begin);
@@ -27,8 +27,8 @@ double elapsedMs(GLuint first, GLuint second, GLint timestampBits) {
   return static_cast<double>(countedBetween(begin, end, timestampBits)) * 1e-6;
 }
 
-// Work that no compiler can shorten: the xorshift generator of Marsaglia 2003, "Xorshift RNGs", as often as
-// asked.
+// Work that no compiler can shorten: repeated steps of the xorshift generator (Marsaglia 2003, "Xorshift
+// RNGs").
 constexpr const char* kBusyFunction = R"(#version 450 core
 layout(location = 0) uniform uint rounds;
 uint busy(uint state) {
@@ -57,11 +57,11 @@ constexpr GLsizei kTargetSize =
     128;  // pixels along a side, hence as many invocations as kGroups work groups of 64
 constexpr GLuint kGroups = kTargetSize * kTargetSize / 64;
 constexpr double kLeastMs = 5.0;  // far above the clock's resolution and the cost of waiting for the device
-constexpr double kTolerance = 0.25;  // how far the two clocks may differ
+constexpr double kTolerance = 0.25;  // largest relative difference of the two clocks
 constexpr GLuint kMostRounds = 1u << 26;
 
-/// The same arithmetic in work groups and in pixels: a tiled software rasteriser keeps honest time stamps for
-/// the one, not the other.
+/// The same arithmetic in work groups and in pixels: a tiled software rasteriser may have correct time stamps
+/// for one of them only.
 class BusyWork {
  public:
   enum class Kind { compute, drawing };
@@ -123,8 +123,8 @@ Comparison measure(const std::array<GLuint, 2>& queries, GLint timestampBits, co
   return {fencedMs, elapsedMs(queries[0], queries[1], timestampBits)};
 }
 
-/// The comparison of the two clocks that differs most. Two amounts of work: a query that is right by chance
-/// for one is not for both.
+/// The comparison with the largest difference of the two clocks, over two amounts of work: a query may be
+/// right by chance for one of them.
 Comparison worstComparison(const std::array<GLuint, 2>& queries, GLint timestampBits) {
   const BusyWork work;
   Comparison worst{1.0, 1.0};
@@ -135,7 +135,7 @@ Comparison worstComparison(const std::array<GLuint, 2>& queries, GLint timestamp
     while (rounds < kMostRounds && measure(queries, timestampBits, work, kind, rounds).fencedMs < kLeastMs)
       rounds *= 2;
     for (const GLuint amount : {rounds, rounds * 2}) {
-      // The better of two, so that an interruption by another process does not condemn the driver.
+      // Takes the better of two, so that an interruption by another process does not discredit the driver.
       const Comparison first = measure(queries, timestampBits, work, kind, amount),
                        second = measure(queries, timestampBits, work, kind, amount);
       const Comparison& better = difference(first) < difference(second) ? first : second;
@@ -204,9 +204,9 @@ Device::Elapsed Device::time(const std::function<void()>& work) {
 struct PassTimers::State {
   std::shared_ptr<DeviceState> device;
   struct Slot {
-    std::vector<GLuint> queries;  ///< two for each part, kept for the next frame
+    std::vector<GLuint> queries;  ///< two for each part, reused in the next frame
     std::size_t parts = 0;
-    bool pending = false;  ///< its times have not been read
+    bool pending = false;  ///< its times are not read back yet
   };
   std::vector<Slot> ring;
   std::size_t next = 0;  ///< slot of the frame under way
@@ -273,7 +273,7 @@ std::vector<PassTimers::Frame> PassTimers::take() {
 std::vector<PassTimers::Frame> PassTimers::takeAll() {
   State& s = *state_;
   s.device->use();
-  // The oldest first: the slots behind the next one to be written.
+  // Starts with the oldest slot, behind the next one to be written.
   for (std::size_t i = 0; i < s.ring.size(); ++i) s.read(s.ring[(s.next + i) % s.ring.size()]);
   return take();
 }

@@ -1,5 +1,5 @@
-// Where the uniform blocks of commands in flight lie. No OpenGL here, so that the order of fences and
-// commands can be tested.
+// Allocates uniform blocks of commands in flight. Without OpenGL, so that tests can check the order of fences
+// and commands.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace lumivox::gpu {
 
-/// Offsets in a buffer that is written round and round. It is cut into segments; a segment is written again
-/// only after the device has passed the fence behind the last command that reads it.
+/// Offsets in a ring buffer of segments. A segment is reused only after the device has passed the fence
+/// behind the last command that reads it.
 class UniformRing {
  public:
   static constexpr std::size_t kSegments = 4;
@@ -20,7 +20,7 @@ class UniformRing {
     virtual ~Fences() = default;
     virtual void insert(std::size_t segment) = 0;  ///< behind all commands so far
     virtual void wait(
-        std::size_t segment) = 0;  ///< until the last fence of this segment is passed, if there is one
+        std::size_t segment) = 0;  ///< waits until the last fence of this segment is passed, if it has one
   };
 
   UniformRing(Fences& fences, std::size_t segmentBytes, std::size_t alignment);
@@ -30,7 +30,7 @@ class UniformRing {
   /// it leaves stands behind every command that reads it, and blocks of earlier commands lie there no longer.
   /// Precondition: at most segmentBytes().
   void reserve(std::size_t bytes);
-  /// The place of a block of the command that room was reserved for.
+  /// The offset of a block; reserve() must have reserved its room.
   std::size_t place(std::size_t bytes);
   /// The room of a block, with the gap before the next.
   std::size_t roomFor(std::size_t bytes) const { return (bytes + alignment_ - 1) / alignment_ * alignment_; }

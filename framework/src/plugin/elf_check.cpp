@@ -23,7 +23,7 @@ bool inside(std::string_view bytes, std::uint64_t offset, std::uint64_t size) {
   return offset <= bytes.size() && size <= bytes.size() - offset;
 }
 
-/// A header of a section; nothing beyond the table or the file.
+/// The header of a section; nothing if it lies beyond the table or the file.
 std::optional<Elf64_Shdr> sectionHeader(std::string_view bytes, const Elf64_Ehdr& file, std::uint64_t index) {
   const std::uint64_t offset = index * sizeof(Elf64_Shdr);
   if (index >= file.e_shnum || file.e_shentsize != sizeof(Elf64_Shdr) || !inside(bytes, file.e_shoff, 0) ||
@@ -34,7 +34,7 @@ std::optional<Elf64_Shdr> sectionHeader(std::string_view bytes, const Elf64_Ehdr
   return header;
 }
 
-/// Nothing where it lies outside of the file.
+/// The contents of a section; nothing if they lie outside of the file.
 std::optional<std::string_view> contentsOf(std::string_view bytes, const Elf64_Shdr& section) {
   if (section.sh_type == SHT_NOBITS) return std::string_view();
   if (!inside(bytes, section.sh_offset, section.sh_size)) return std::nullopt;

@@ -1,5 +1,5 @@
-// What the bytes of a library's file say before the dynamic loader gets them: it does not survive every
-// broken file, and runs the code of every whole one.
+// Checks the bytes of a library before the dynamic loader gets them: the loader crashes on some damaged
+// files, and runs the code of every intact one.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ namespace lumivox {
 /// file by its headers alone, and a file that ends early then faults while it is read.
 std::string sharedLibraryDefect(std::string_view bytes);
 
-/// The contents of the first section of that name; nothing where the file has none, or where its table of
-/// sections is broken. Of a file without a defect (sharedLibraryDefect).
+/// The contents of the first section of that name; nothing if the file has none or its section table is
+/// damaged. Precondition: sharedLibraryDefect() found no defect.
 std::optional<std::string_view> sectionOf(std::string_view bytes, std::string_view name);
 
 }  // namespace lumivox

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A library that is unfit; carries the reason.
+/// The reason why a library cannot be used.
 class Unfit : public Error {
  public:
   using Error::Error;
@@ -63,7 +63,7 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
   if (const std::string defect = sharedLibraryDefect(bytes); !defect.empty()) throw Unfit(defect);
   technique->hash = hashOf(bytes);
 
-  // Asked of the file: opening a library runs its code, and may bind the data of others to it.
+  // Read from the file, because opening a library runs its code and may bind the data of others to it.
   const std::optional<std::string_view> version = sectionOf(bytes, LUMIVOX_VERSION_SECTION);
   if (!version)
     throw Unfit("it has no version record (ELF section " LUMIVOX_VERSION_SECTION
@@ -79,8 +79,8 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
     }
   }
 
-  // The path holds a slash, so that the loader searches nowhere else. The handle stays open until the end of
-  // the program: passes and their functions live in it.
+  // The path contains a slash, so that the loader searches nowhere else. The handle stays open until the
+  // program ends, because passes and their functions live in it.
   void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     const char* reason = dlerror();
@@ -92,7 +92,7 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
   return technique;
 }
 
-/// Names of folders and libraries, and so never a path.
+/// A name of a folder and a library, never a path.
 bool isTechniqueName(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(),
                                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });

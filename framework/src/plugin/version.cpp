@@ -10,7 +10,7 @@ namespace lumivox {
 
 namespace {
 
-/// As it may be shown: a broken record may hold anything.
+/// A printable text: a damaged record may contain anything.
 template <std::size_t Size>
 std::string shown(const char (&text)[Size]) {
   std::string word(text, strnlen(text, Size));
@@ -40,8 +40,8 @@ std::string versionDifference(std::string_view bytes) {
     if (difference.empty() && std::strncmp(their, our, sizeof(our)) != 0)
       difference = fmt::format("{} is '{}', expected '{}'", what, shown(their), our);
   };
-  // Behind a record of another version or size nothing can be trusted. The hash of the headers comes behind
-  // what tells more.
+  // A record of another version or size says nothing reliable beyond that. The hash of the headers comes
+  // last, since it explains least.
   number("the API version", theirs.apiVersion, ours.apiVersion);
   number("the size of the version record", theirs.recordSize, ours.recordSize);
   word("the compiler", theirs.compiler, ours.compiler);

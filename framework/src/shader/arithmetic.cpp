@@ -13,7 +13,7 @@ std::vector<std::uint32_t> withoutContractionMarks(std::span<const std::uint32_t
   for (std::size_t at = kHeader; at < spirv.size();) {
     const std::size_t length = spirv[at] >> 16;
     if (length == 0 || at + length > spirv.size())
-      return {spirv.begin(), spirv.end()};  // the driver says why
+      return {spirv.begin(), spirv.end()};  // the driver reports the error
     const bool mark = (spirv[at] & 0xffffu) == kOpDecorate && length == 3 && spirv[at + 2] == kNoContraction;
     if (!mark) kept.insert(kept.end(), spirv.begin() + at, spirv.begin() + at + length);
     at += length;

@@ -1,4 +1,4 @@
-// Programs as a renderer ships them: without the marks that forbid a driver to fuse and to reorder.
+// Programs as a released renderer has them: drivers may contract and reorder arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace lumivox::shader {
 
-/// The module without its NoContraction decorations, those of `precise` in the source included. What is
-/// Invariant stays so: passes that must agree on positions still do.
+/// The module without its NoContraction decorations, including those of `precise` in the source. Invariant
+/// decorations stay, so that passes still agree on positions.
 std::vector<std::uint32_t> withoutContractionMarks(std::span<const std::uint32_t> spirv);
 
 }  // namespace lumivox::shader

@@ -54,7 +54,7 @@ class ByteReader {
     text.resize(count());
     take(text.data(), text.size());
   }
-  /// A text where it lies.
+  /// A view of a text in the buffer.
   std::string_view view() {
     const std::size_t size = count();
     const std::string_view text = rest_.substr(0, size);
@@ -67,14 +67,14 @@ class ByteReader {
   }
   template <class T, class Read>
   void each(std::vector<T>& values, Read&& read) {
-    // Grows as the elements come, so that a wrong count takes no more memory than the bytes that are there.
+    // Grows with the elements read, so that a wrong count takes no more memory than the file's bytes.
     values.clear();
     for (std::size_t rest = count(); rest > 0; --rest) read(values.emplace_back());
   }
   bool atEnd() const { return rest_.empty(); }
 
  private:
-  /// Of elements, each of which takes at least a byte.
+  /// A number of elements of at least one byte each.
   std::size_t count() {
     std::uint32_t n = 0;
     value(n);

@@ -36,7 +36,7 @@ const char* filterOf(const ResourceBinding::Sampled& sampled, TextureAccess::Kin
   return "";
 }
 
-/// The name under which an access counts, by what is bound there.
+/// The name under which an access is counted: it depends on the bound resource.
 std::string nameOf(const TextureAccess& access, const std::vector<ResourceBinding>& bound) {
   const bool isSample =
       access.kind == TextureAccess::Kind::sample || access.kind == TextureAccess::Kind::fetch;
@@ -46,7 +46,7 @@ std::string nameOf(const TextureAccess& access, const std::vector<ResourceBindin
     const auto* image = std::get_if<ResourceBinding::StorageImage>(&binding.resource);
     if (isSample ? sampled == nullptr : image == nullptr) continue;
     const gpu::TextureDescription& d = (isSample ? sampled->texture : image->texture)->description();
-    // An array's layers are images.
+    // Layers of an array count as 2D images.
     const char* kind = d.kind == gpu::TextureKind::d3 ? "d3" : "d2";
     if (isSample)
       return fmt::format("texture_samples_{}_{}_{}", kind, gpu::name(d.format),

@@ -12,7 +12,7 @@ class CountingProgram {
  public:
   CountingProgram(gpu::Device& device, const PackedProgram& packed,
                   const std::vector<gpu::StageCode>& stages);
-  /// To be linked in place of the stages that it was made from.
+  /// The instrumented stages, to be linked in place of the original ones.
   std::vector<gpu::StageCode> stages() const;
   gpu::ResourceBinding counters() const;
   /// Work done since the last call, with these resources bound.

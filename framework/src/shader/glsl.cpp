@@ -23,7 +23,7 @@ std::string glslOf(const std::vector<std::uint32_t>& spirv) {
   }
 }
 
-// Here, so that the compiler of packs needs none of it.
+// In a file of its own, so that the compiler of packs does not link SPIRV-Cross for it.
 std::string PackedCode::glsl() const {
   return glslOf(spirv());
 }

@@ -1,4 +1,4 @@
-// SPIR-V as text, for a device that takes no SPIR-V.
+// SPIR-V as GLSL text, for devices without SPIR-V.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace lumivox::shader {
 
-/// GLSL 4.50 by SPIRV-Cross; specialisation constants are SPIRV_CROSS_CONSTANT_ID_n macros. Error saying why
-/// it cannot be written so.
+/// GLSL 4.50 by SPIRV-Cross; specialisation constants are macros SPIRV_CROSS_CONSTANT_ID_n. Error with the
+/// reason if there is no such text.
 std::string glslOf(const std::vector<std::uint32_t>& spirv);
 
 }  // namespace lumivox::shader

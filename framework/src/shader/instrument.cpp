@@ -37,7 +37,7 @@ struct Type {
   std::vector<std::uint32_t> operands;  ///< without the result
 };
 
-/// Types, variables and decorations: what has to be known to say what an instruction costs.
+/// The types, variables and decorations that determine the cost of an instruction.
 class Module {
  public:
   void learn(spv::Op operation, Operands w) {
@@ -57,7 +57,7 @@ class Module {
         break;
       case spv::OpDecorate:
         if (w[1] == spv::DecorationBinding) bindings_[w[0]] = w[2];
-        // The same for a whole work group.
+        // Built-ins that are uniform over a work group.
         if (w[1] == spv::DecorationBuiltIn &&
             (w[2] == spv::BuiltInWorkgroupId || w[2] == spv::BuiltInNumWorkgroups))
           ofGroup_.insert(w[0]);
@@ -72,7 +72,7 @@ class Module {
     bool hasResult = false, hasType = false;
     spv::HasResultAndType(operation, &hasResult, &hasType);
     if (hasResult && hasType && w.size() >= 2) typeOf_[w[1]] = w[0];
-    // Values derived from a variable are traced to it: a part of it, or the texture that was read from it.
+    // Traces values to the variable that they come from: its parts, or a texture loaded from it.
     switch (operation) {
       case spv::OpVariable:
         variableOf_[w[1]] = w[1];
@@ -91,15 +91,16 @@ class Module {
     }
   }
 
-  /// Learns which values can differ between neighbouring invocations, by where they come from: inputs,
-  /// atomics, and all that is made of such. To be repeated until it returns false: loops hand values back. A
-  /// value that differs only because neighbours took other branches is not found.
+  /// Finds values that can differ between neighbouring invocations: inputs, results of atomics, and values
+  /// computed from them. Repeat it until it returns false, since loops pass values back. It misses values
+  /// that differ only because neighbours took other branches.
   bool spread(spv::Op operation, Operands w);
 
   BlockWork& count(spv::Op operation, Operands w, BlockWork& block) const;
   Id entryFunction = 0;
   double groupSize = 1.0;
-  /// The 32-bit unsigned integer, if the module has it: such a type may be declared once only.
+  /// The type of 32-bit unsigned integers, if the module has one: SPIR-V allows a type to be declared only
+  /// once.
   Id unsignedType() const {
     for (const auto& [id, type] : types_)
       if (type.operation == spv::OpTypeInt && type.operands == std::vector<std::uint32_t>{32, 0}) return id;
@@ -126,7 +127,7 @@ class Module {
     const auto binding = bindings_.find(variable->second);
     return binding == bindings_.end() ? std::nullopt : std::optional(binding->second);
   }
-  /// The storage class of a pointer; Function, for one that is not known, costs nothing.
+  /// The storage class of a pointer; Function, which costs nothing, for an unknown one.
   spv::StorageClass storage(Id pointer) const {
     const Type& t = typeOfValue(pointer);
     return t.operation == spv::OpTypePointer ? static_cast<spv::StorageClass>(t.operands[0])
@@ -157,7 +158,7 @@ bool Module::spread(spv::Op operation, Operands w) {
   bool hasResult = false, hasType = false;
   spv::HasResultAndType(operation, &hasResult, &hasType);
   if (operation == spv::OpStore) {
-    // Values stored in a variable of the invocation's own come back from it.
+    // A variable of the invocation returns the values stored in it.
     const auto variable = variableOf_.find(w[0]);
     if (variable == variableOf_.end() || storage(w[0]) == spv::StorageClassUniform) return false;
     return (differs(w[1]) || differs(w[0])) && divergent_.insert(variable->second).second;
@@ -170,7 +171,7 @@ bool Module::spread(spv::Op operation, Operands w) {
                            (differs(variable->second) || (storage(w[2]) == spv::StorageClassInput &&
                                                           ofGroup_.count(variable->second) == 0)));
   } else {
-    // Numbers among the operands are no values.
+    // Literal numbers among the operands are no values.
     const std::size_t first = operation == spv::OpExtInst ? 4 : 2;
     const std::size_t end = operation == spv::OpCompositeExtract ? 3
                             : operation == spv::OpCompositeInsert || operation == spv::OpVectorShuffle
@@ -181,7 +182,7 @@ bool Module::spread(spv::Op operation, Operands w) {
   return is && divergent_.insert(w[1]).second;
 }
 
-/// Of a value in a buffer; padding does not count, an array of open length is one element.
+/// Size of a value in a buffer, without padding; a runtime array counts as one element.
 double Module::bytes(Id id) const {
   const Type& t = type(id);
   switch (t.operation) {
@@ -216,7 +217,7 @@ void Module::countAccess(Id pointer, double sizeBytes, const std::string& buffer
   if (place == spv::StorageClassUniform && isStorageBlock(pointer)) block.work[bufferName] += sizeBytes;
 }
 
-/// The functions of GLSL: those that the arithmetic units do at once, and those that are series or tables.
+/// Counts a function of GLSL.std.450: one instruction of the arithmetic units, or a series or table.
 void Module::countFunction(Operands w, BlockWork& block) const {
   if (w[2] != library_) return;
   const double n = components(type(w[0]));
@@ -340,8 +341,8 @@ BlockWork& Module::count(spv::Op operation, Operands w, BlockWork& block) const 
     default:
       break;
   }
-  // Arithmetic proper is one run of codes, from conversions to comparisons and bits (SPIR-V, Sec. 3.32.11 to
-  // 3.32.15).
+  // Arithmetic instructions have consecutive codes, from conversions to comparisons and bit operations
+  // (SPIR-V, Sec. 3.32.11 to 3.32.15).
   if (operation < spv::OpConvertFToU || operation > spv::OpBitCount || operation == spv::OpBitcast)
     return block;
   const Type& result = type(w[0]);
@@ -386,11 +387,11 @@ class Counter {
     most_ = constant(~0u);
     device_ = constant(spv::ScopeDevice);
   }
-  /// A module that has the type of reference values already must use that one.
+  /// Uses the module's own Boolean type: SPIR-V allows only one declaration.
   void useBoolean(Id type) { boolean_ = type; }
   void declareBoolean() { emit(declarations, spv::OpTypeBool, {boolean_}); }
 
-  /// Adds one to the two words of a counter. The high word takes over when the low one wraps around.
+  /// Emits code that adds one to a counter of two words, with the carry from the low word to the high one.
   void count(std::vector<std::uint32_t>& code, std::uint32_t word) {
     const Id low = constant(word), high = constant(word + 1);
     const Id lowPointer = bound_++, highPointer = bound_++, before = bound_++, wraps = bound_++,
@@ -455,7 +456,7 @@ CountingCode instrument(std::span<const std::uint32_t> spirv, std::uint32_t bind
     inTypes = inTypes || (operation >= spv::OpTypeVoid && operation <= spv::OpTypeForwardPointer);
     inFunctions = inFunctions || operation == spv::OpFunction;
     std::vector<std::uint32_t>& into = inFunctions ? functions : inTypes ? types : before;
-    // A count stands behind what must come first in a block.
+    // The counting code follows the instructions that must come first in a block.
     const bool first = operation == spv::OpLabel || operation == spv::OpPhi || operation == spv::OpVariable ||
                        operation == spv::OpLine || operation == spv::OpNoLine;
     if (opens && !first) {

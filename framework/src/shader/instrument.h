@@ -22,8 +22,8 @@ struct TextureAccess {
 
 /// The work of one pass of one invocation through a block.
 struct BlockWork {
-  Work work;                               ///< what does not depend on what is bound
-  std::map<TextureAccess, double> access;  ///< how often
+  Work work;                               ///< the part that does not depend on bound resources
+  std::map<TextureAccess, double> access;  ///< number of accesses
 };
 
 struct CountingCode {

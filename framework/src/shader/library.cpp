@@ -40,7 +40,7 @@ const char* name(gpu::TextureKind kind) {
   return "";
 }
 
-/// The mismatch between this resource and this binding; empty when there is none.
+/// How a resource mismatches a binding; empty if it matches.
 struct Mismatch {
   const PackedBinding& expected;
 
@@ -104,7 +104,7 @@ struct ProgramKey {
   ProgramRequest request() const { return {technique, program, values, constants}; }
 };
 
-/// Order of programs; asked with a request, it finds a key without making one.
+/// The order of programs; it compares requests with keys without making a key.
 struct ProgramOrder {
   using is_transparent = void;
   static const ProgramRequest& requestOf(const ProgramRequest& request) { return request; }
@@ -133,12 +133,12 @@ struct ShaderLibrary::State {
   gpu::Device& device;
   std::map<std::string, ShaderPack> packs;
   std::map<ProgramKey, BoundProgram, ProgramOrder> programs;
-  std::vector<ResourceBinding> selected;  ///< of the command being given; a member for its memory
+  std::vector<ResourceBinding> selected;  ///< of the current command; a member to reuse its memory
   bool counts = false;
   Work work;
-  gpu::Device::Transfers transfers, own;  ///< when work was taken last; of counting itself since then
+  gpu::Device::Transfers transfers, own;  ///< at the last takeWork(); those of counting itself since then
 
-  /// Runs the counting's own moves and clears, which count as no work.
+  /// Runs the transfers and clears of counting, which do not count as work.
   template <class Counting>
   void apart(Counting&& counting) {
     const gpu::Device::Transfers before = device.transfers();
@@ -183,7 +183,7 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, VariantKey v
                                 : "its constraints exclude it"));
   }
   std::vector<gpu::StageCode> stages;
-  // Expanded for as long as the program is made; where they lie must not change.
+  // Expanded while the program is made; their addresses must not change.
   std::vector<std::pair<std::vector<std::uint32_t>, std::string>> codes;
   codes.reserve(found->stages.size());
   const bool takesText = state_->device.shaderInput() == gpu::ShaderInput::glsl;
@@ -218,7 +218,7 @@ void ShaderLibrary::selectInto(std::vector<ResourceBinding>& selected, const Bou
   selected.clear();
   for (const std::uint32_t index : program.variant->bindingsUsed) {
     const PackedBinding& expected = program.packed->bindings[index];
-    // The number is compared first: names of others are not looked at.
+    // Compares numbers first, and names only for equal numbers.
     const auto given = std::find_if(bindings.begin(), bindings.end(), [&](const ResourceBinding& binding) {
       return (binding.binding == expected.binding || binding.binding == kByName) &&
              kindOf(binding) == expected.kind && expected.name == binding.name;
@@ -238,7 +238,7 @@ void ShaderLibrary::selectInto(std::vector<ResourceBinding>& selected, const Bou
   }
 }
 
-/// Runs a program with what it binds; a counting one with its counters too.
+/// Runs a program with its bindings and, if it counts, its counters.
 template <class Run>
 void ShaderLibrary::run(const BoundProgram& program, Bindings bindings, Run&& run) {
   std::vector<ResourceBinding>& selected = state_->selected;

@@ -74,8 +74,7 @@ void writeContent(ByteWriter& out, const ShaderPack& pack) {
   });
 }
 
-/// An index or an enumerator beyond its end; only a wrong writer can cause it, since the checksum has been
-/// checked.
+/// An index or enumerator out of range. The checksum was checked, so only a faulty writer can cause it.
 struct OutOfRange {};
 
 template <class Value>
@@ -83,7 +82,7 @@ void requireBelow(Value value, std::uint64_t end) {
   if (static_cast<std::uint64_t>(value) >= end) throw OutOfRange{};
 }
 
-/// Codes stay where they lie in the file.
+/// Codes stay in place in the file's buffer.
 void readContent(ByteReader& in, ShaderPack& pack, const std::shared_ptr<const std::string>& file) {
   constexpr std::uint64_t kFormats = static_cast<std::uint64_t>(gpu::Format::depth32f) + 1;
   in.value(pack.technique);

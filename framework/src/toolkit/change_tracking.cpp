@@ -13,11 +13,11 @@ namespace {
 
 namespace code = shaders::toolkit;
 
-/// Cells are bricks of 4 x 4 x 4 voxels, and larger ones where there would be more of them along an axis:
-/// each is looked for behind all that moves.
+/// Cells are bricks of 4 x 4 x 4 voxels, or larger ones where an axis would have more than 2^kMostCellDepth:
+/// each cell is tested against all moving boxes.
 constexpr int kLeastShift = 2, kMostCellDepth = 5;
 
-/// Light is looked for behind about so many boxes around what moves, and one for each draw at least.
+/// The number of boxes around moving triangles behind which light may change; at least one for each draw.
 constexpr std::uint32_t kBoxes = 64;
 
 Bounds placed(const Bounds& bounds, const glm::mat4& toWorld) {
@@ -29,7 +29,7 @@ Bounds placed(const Bounds& bounds, const glm::mat4& toWorld) {
   return result;
 }
 
-/// Cells of a grid; nothing in them.
+/// The empty cells of a grid.
 ChangedCells cellsOver(const GridPlacement& grid) {
   ChangedCells result;
   result.voxelDepth = voxelDepthOver(grid);
@@ -45,7 +45,7 @@ CellFragments sortedByCells(PassContext& frame, const VoxelFragments& still) {
   const CellFragments result{
       frame.emptyElements(code::changed_sort::cellEnds, countOf(cells), "fragments of cells"),
       frame.elements(code::changed_sort::cellFragments, still.capacity, "static fragments by cells")};
-  cells.bits = result.ends;  // no cell has changed, and no shader here asks
+  cells.bits = result.ends;  // no cell has changed, and no shader here reads it
   const shader::BindingSet bindings{cells.bindings(), code::changed_sort::cellEnds(result.ends),
                                     code::changed_sort::cellFragments(result.fragments)};
   using Variant = code::changed_sort::Variant;
@@ -55,13 +55,13 @@ CellFragments sortedByCells(PassContext& frame, const VoxelFragments& still) {
   return result;
 }
 
-/// What is listed of changed cells.
+/// Bindings of the list of changed cells.
 shader::BindingSet listing(const ChangedCells& cells) {
   return {cells.bindings(), code::changed_mark::changedCount(cells.count),
           code::changed_mark::changedFragments(cells.fragments)};
 }
 
-/// The cells of moving fragments alone, which are listed.
+/// The cells that hold moving fragments, with their list.
 ChangedCells cellsOfMoving(PassContext& frame, const VoxelFragments& list) {
   ChangedCells result = cellsOver(list.grid);
   result.bits = frame.emptyElements(code::changed_mark::changedCells, wordsBeforeDepth(result.cellDepth + 1),
@@ -73,7 +73,7 @@ ChangedCells cellsOfMoving(PassContext& frame, const VoxelFragments& list) {
   return result;
 }
 
-/// Marks the cells in which light that passes through these bounds arrives.
+/// Marks the cells that light arrives in after it has passed through these bounds.
 void markLit(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
              const In<ShadowMap>& shadow, const std::vector<Bounds>& moving, const ChangedCells& result) {
   const BoxesInViews boxes(frame, shadow, moving);
@@ -182,7 +182,7 @@ std::optional<std::vector<Bounds>> ChangeTracking::moving(PassContext& frame) {
     if (scene.materials[static_cast<std::size_t>(draw.material)].emissive()) return std::nullopt;
     indices += draw.indexCount;
   }
-  // Triangles that follow each other mostly lie beside each other.
+  // Consecutive triangles mostly lie beside each other, so runs of them have small boxes.
   const std::uint32_t each = 3 * ((indices / 3 + kBoxes - 1) / kBoxes);
   atRest_.resize(draws.size());
   std::vector<Bounds> result;

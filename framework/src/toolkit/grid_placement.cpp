@@ -22,7 +22,7 @@ GridPlacement placeGrid(const Bounds& bounds, int resolution) {
   const float longest = std::max({extent.x, extent.y, extent.z, 1e-6f});
   const int margin = resolution >= kSmallestWithMargin ? 1 : 0;
   grid.voxelSize = longest / static_cast<float>(resolution - 2 * margin);
-  // Half of a thousandth of a voxel keeps a wall on the bounds from falling between two voxels by rounding.
+  // Half a thousandth of a voxel more keeps rounding from placing a wall on the bounds between two voxels.
   grid.voxelSize *= 1.0005f;
   for (int axis = 0; axis < 3; ++axis) {
     // A flat scene lies in the middle of a voxel, not between two.
@@ -40,8 +40,8 @@ GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolut
   grid.resolution = glm::ivec3(resolution);
   grid.voxelSize = extent / static_cast<float>(resolution);
   const double voxel = grid.voxelSize;
-  // The middle is rounded and not the corner: a camera in the middle of the scene, which is common, must not
-  // lie where rounding decides between two voxels.
+  // The middle is rounded, not the corner: a camera in the middle of the scene is common, and rounding must
+  // not decide between two voxels there.
   const glm::dvec3 middle = glm::round(glm::dvec3(centre) / voxel);
   grid.low = glm::vec3((middle - 0.5 * static_cast<double>(resolution)) * voxel);
   return grid;

@@ -37,15 +37,16 @@ float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float n
 
 float largestFlux(const Scene& scene, const SceneSnapshot& snapshot) {
   const float radius = 0.5f * glm::length(snapshot.bounds.high - snapshot.bounds.low) * 1.01f;
-  constexpr int kEmitters = 64;  // samples of the emissive triangles: only their sum counts
+  constexpr int kEmitters = 64;  // samples of the emissive triangles; only their sum matters
   float sum = 0.0f;
   for (const LightSampleData& light : sampleLights(scene, snapshot, kEmitters, 1).samples) {
     const float power = largest(light.power);
-    // Through the sphere around the scene; over all directions; over the half sphere of a Lambert emitter.
+    // Power of a directional light through the sphere around the scene, of a point over all directions, of a
+    // Lambert emitter over its hemisphere.
     if (light.kind == LightSampleKind::directional) sum += power * glm::pi<float>() * radius * radius;
     if (light.kind == LightSampleKind::point || light.kind == LightSampleKind::spot)
       sum += power * 4.0f * glm::pi<float>();
-    // Samples go by luminance: twice, for emitters of other colours.
+    // Samples are chosen by luminance; the factor 2 covers emitters of other colours.
     if (light.kind == LightSampleKind::area) sum += 2.0f * power * glm::pi<float>();
   }
   return sum > 0.0f && std::isfinite(sum) ? sum : 1.0f;

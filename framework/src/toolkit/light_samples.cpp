@@ -22,14 +22,14 @@ glm::mat4 perspectiveView(const glm::vec3& eye, const glm::vec3& forward, float 
 const std::array<glm::vec3, 6> kFaces{glm::vec3(1, 0, 0),  glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0),
                                       glm::vec3(0, -1, 0), glm::vec3(0, 0, 1),  glm::vec3(0, 0, -1)};
 
-/// A light that shines away from the scene's bounds cannot need a longer reach than this.
+/// The distance to the farthest corner of the scene's bounds: no light needs a longer reach.
 float reachFrom(const Bounds& bounds, const glm::vec3& point) {
   const glm::vec3 farCorner = glm::max(glm::abs(bounds.low - point), glm::abs(bounds.high - point));
   return std::max(glm::length(farCorner), 1e-6f) * 1.01f;
 }
 
 constexpr int kCubeViews = 6;
-constexpr float kNearShare = 1e-3f;  // near plane of a perspective shadow view, as a share of its far plane
+constexpr float kNearShare = 1e-3f;  // near plane of a perspective shadow view over its far plane
 
 float texelPerMetre(float halfAngle, int size) {
   return 2.0f * std::tan(halfAngle) / static_cast<float>(size);
@@ -40,18 +40,18 @@ void addCube(LightSet& set, const glm::vec3& eye, const Bounds& bounds, const gl
   for (const glm::vec3& face : kFaces) {
     LightView view;
     view.worldToClip = perspectiveView(eye, face, glm::radians(45.0f), far * kNearShare, far);
-    // A face opposite to the normal of an area light sees nothing that the light shines on: all of it is more
-    // than 90 degrees away only when the normal is the axis itself.
+    // An area light shines on nothing in the face opposite to its normal, if the whole face is more than 90
+    // degrees away: only when the normal is the axis itself.
     view.used = front == nullptr || glm::dot(*front, face) > -0.999f;
     set.views.push_back(view);
   }
 }
 
-/// A triangle that shines where its mask, if it has one, leaves it.
+/// An emissive triangle, of which an alpha mask may cut out holes.
 struct Emitter {
   glm::vec3 a, b, c, normal;
   glm::vec3 radiance;
-  float area;    ///< that shines, m^2
+  float area;    ///< m^2, without holes
   float weight;  ///< luminance times area
   const SurfaceTexture* mask = nullptr;
   std::array<glm::vec2, 3> texcoords{};
@@ -63,10 +63,10 @@ struct Emitter {
   }
 };
 
-/// The emissive triangles of one part of an object, which are of one material.
+/// The emissive triangles of one part of an object; they have one material.
 struct AreaLight {
   std::vector<Emitter> emitters;
-  double weight = 0.0;  ///< of all its emitters together
+  double weight = 0.0;  ///< sum over its emitters
 };
 
 /// Area-uniform on a triangle, as barycentric coordinates of its second and third corner: the unit square
@@ -80,11 +80,11 @@ glm::vec2 trianglePoint(int index) {
   return glm::vec2(u, v);
 }
 
-/// How many points of masks all emitters together may look up for one set of samples: a few milliseconds.
+/// Most mask look-ups of all emitters together for one set of samples: a few milliseconds.
 constexpr std::size_t kMostMaskPoints = std::size_t{1} << 18;
 
-/// The share of a masked emitter that is no hole, at `points` points. The sequence goes on from one triangle
-/// to the next, so that what few points miss of one of many leaves is found on another.
+/// The share of a masked emitter that is no hole, estimated at `points` points. The sequence continues from
+/// one triangle to the next, so that the error of few points averages out over many leaves.
 float shiningShare(Emitter& emitter, std::size_t points, int& sequence) {
   std::size_t shining = 0;
   for (std::size_t i = 0; i < points; ++i) {
@@ -95,7 +95,7 @@ float shiningShare(Emitter& emitter, std::size_t points, int& sequence) {
   return static_cast<float>(shining) / static_cast<float>(points);
 }
 
-/// Emissive triangles whose masks have to be looked at.
+/// The number of emissive triangles with a mask.
 std::size_t maskedEmitters(const Scene& scene) {
   std::size_t count = 0;
   for (const Object& object : scene.objects) {
@@ -108,7 +108,7 @@ std::size_t maskedEmitters(const Scene& scene) {
 }
 
 std::vector<AreaLight> areaLightsOf(const Scene& scene, const SceneSnapshot& snapshot) {
-  // The error of 2^14 points on one triangle is below a thousandth of it.
+  // 2^14 points on one triangle give an error below a thousandth of its area.
   constexpr std::size_t kEnoughPoints = std::size_t{1} << 14, kFewestPoints = 16;
   const std::size_t points = std::clamp(kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1),
                                         kFewestPoints, kEnoughPoints);
@@ -154,7 +154,7 @@ std::vector<AreaLight> areaLightsOf(const Scene& scene, const SceneSnapshot& sna
   return areaLights;
 }
 
-/// A point of what shines of a triangle: the next of the sequence that is no hole.
+/// A shining point of a triangle: the next point of the sequence that is no hole.
 glm::vec2 pointOn(const Emitter& emitter, int& sequence) {
   constexpr int kMostHoles = 1000;
   for (int tries = 0; tries < kMostHoles; ++tries) {
@@ -164,8 +164,8 @@ glm::vec2 pointOn(const Emitter& emitter, int& sequence) {
   return emitter.someShiningPoint;
 }
 
-/// One sample for each area light and the others by their power: a dim area light may be all that lights a
-/// place.
+/// One sample for each area light, since a dim one may be the only light of a place; the other samples by
+/// power.
 std::vector<int> samplesOfAreaLights(const std::vector<AreaLight>& areaLights, int count) {
   double total = 0.0;
   for (const AreaLight& areaLight : areaLights) total += areaLight.weight;
@@ -183,7 +183,7 @@ std::vector<int> samplesOfAreaLights(const std::vector<AreaLight>& areaLights, i
   return samples;
 }
 
-/// Samples of one area light, strata of its power, as its whole light.
+/// Adds the samples of one area light, stratified by power; together they carry all of its light.
 void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& sequence, const Bounds& bounds,
                   int shadowSize) {
   std::vector<double> cumulative;
@@ -202,8 +202,8 @@ void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& seq
     const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
     const double probability = emitter.weight / areaLight.weight;
     const float area =
-        static_cast<float>(emitter.area / (probability * count));  // that the sample stands for
-    // Nearer than the radius of its patch the inverse square law of a point does not hold for a sample.
+        static_cast<float>(emitter.area / (probability * count));  // area that the sample represents
+    // The inverse square law of a point fails nearer than the radius of the sample's patch.
     const float patchRadius = std::sqrt(area / glm::pi<float>());
     set.samples.push_back({position, LightSampleKind::area, emitter.normal,
                            static_cast<int>(set.views.size()), emitter.radiance * area, kCubeViews,
@@ -213,7 +213,7 @@ void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& seq
   }
 }
 
-/// Holes of masks count as if they shone.
+/// Holes of masks count as shining area.
 LightDisc discOf(const AreaLight& areaLight) {
   LightDisc disc;
   const auto part = [&](const Emitter& emitter) {
@@ -236,7 +236,7 @@ LightDisc discOf(const AreaLight& areaLight) {
   return disc;
 }
 
-/// For the samples that belong to no disc yet.
+/// Adds a disc for each sample that has none.
 void addDiscOfEachSample(LightSet& set) {
   for (std::size_t i = set.discs.size(); i < set.samples.size(); ++i) {
     const LightSampleData& sample = set.samples[i];
@@ -251,7 +251,8 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
   if (areaLights.empty()) return;
   const bool eachItsDisc = static_cast<int>(areaLights.size()) <= count;
   if (!eachItsDisc) {
-    // Too many for a sample each: one area light of all emitters, the dimmest of which may get none.
+    // Too many area lights for a sample each: all emitters become one area light, and the dimmest may get no
+    // sample.
     AreaLight all;
     for (const AreaLight& areaLight : areaLights) {
       all.emitters.insert(all.emitters.end(), areaLight.emitters.begin(), areaLight.emitters.end());
@@ -273,7 +274,7 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
 }
 
 void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds, int shadowSize) {
-  // The orthographic view that just holds the bounding sphere.
+  // The smallest orthographic view that contains the bounding sphere.
   const glm::vec3 centre = 0.5f * (bounds.low + bounds.high);
   const float radius = std::max(0.5f * glm::length(bounds.high - bounds.low), 1e-6f) * 1.01f;
   const glm::vec3 helper = std::abs(light.direction.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);

@@ -26,7 +26,7 @@ MediaBinding::MediaBinding(PassContext& frame, const ScatteringGrid& grid) {
     one.highDensity.w = static_cast<float>(textures);
     densities_[textures++] = medium.density;
   }
-  // Every binding of the shader needs a texture, also those that no medium uses.
+  // Every texture binding of the shader needs a texture, also without a medium.
   for (std::size_t i = textures; i < densities_.size() && textures > 0; ++i)
     densities_[i] = densities_.front();
   const auto count = static_cast<int>(data.size());

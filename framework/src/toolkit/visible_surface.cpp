@@ -31,22 +31,22 @@ VisibleSurfaceBinding::VisibleSurfaceBinding(const PassContext& frame, const Sce
   add(UniformSlot<DrawnBlock>{"Drawn"}({static_cast<float>(draw.model)}));
 }
 
-// In single precision a depth that begins at a ten thousandth of the far end tells surfaces apart that are
-// 6e-4 of it from each other: from outside of the scene it begins where the scene does.
+// With the near plane at 10^-4 of the far plane, single precision separates surfaces that are 6e-4 of the far
+// distance apart. Seen from outside of the scene, the near plane is therefore at the scene's bounds.
 glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
   const CameraView& camera = snapshot.camera;
   const glm::vec3 farCorner =
       glm::max(glm::abs(snapshot.bounds.low - camera.eye), glm::abs(snapshot.bounds.high - camera.eye));
   const float far = std::max(glm::length(farCorner), 1e-6f) * 1.01f;
   const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-  // Along the axis, of what is seen in a corner of the image.
+  // Depth along the axis of a point seen in a corner of the image.
   const glm::vec3 nearest = glm::clamp(camera.eye, snapshot.bounds.low, snapshot.bounds.high);
   const float before = 0.99f * glm::length(nearest - camera.eye) /
                        glm::length(glm::vec3(1.0f, camera.tanHalfFov, camera.tanHalfFov * aspect));
   const float near = std::max(far * 1e-4f, before);
   const float fov = 2.0f * std::atan(camera.tanHalfFov);
   glm::mat4 projection = glm::perspectiveRH_ZO(fov, aspect, near, far);
-  // The image moves against the rays; clip space is 2 wide, and w is minus the depth's coordinate.
+  // The image moves against the rays. Clip space is 2 wide, and w is the negative z coordinate.
   projection[2][0] += 2.0f * camera.shift.x / static_cast<float>(camera.width);
   projection[2][1] -= 2.0f * camera.shift.y / static_cast<float>(camera.height);
   return projection * glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);

@@ -32,14 +32,14 @@ struct alignas(16) BackProjectionBlock {
 };
 
 constexpr float kLargestTolerance = 1000.0f;
-// Smallest cosine between a surface and the light: that of the map's areas, and the printed one.
+// Lower bounds of the cosine between surface and light: that of the map's areas, and the printed one.
 constexpr float kLeastCosine = 0.02f, kPrintedLeastCosine = 0.001f;
 
 constexpr int kBits = BinaryGrid::kStack;
 using Stack = std::array<std::uint32_t, 4>;
 
-/// Listing 4.39, in our order of bits: mask i holds the bits from i on. Of number 128, which Listing 4.40
-/// reads, there is none: a device that guards its reads returns 0.
+/// Listing 4.39, in our order of bits: mask i holds the bits from i on. Mask 128, which Listing 4.40 reads,
+/// does not exist: a device that guards its reads returns 0.
 Stack prefixMask(int i) {
   Stack mask{};
   for (int bit = i; bit < kBits; ++bit)

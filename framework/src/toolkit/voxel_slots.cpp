@@ -19,8 +19,8 @@ VoxelSlots claimSlots(PassContext& frame, const VoxelFragments& list, std::uint6
   slots.count = countBuffer(frame, "slot count");
   slots.voxels = frame.elements(code::claim::slotVoxels, list.capacity, "voxels of slots");
   forEachFragment(frame, frame.program(code::claim::kProgram), {SlotBinding(slots)}, list);
-  // A first guess: surfaces fill about as many voxels as six sides of the grid, some in two layers; never
-  // more than there are fragments.
+  // First guess: surfaces fill about as many voxels as six sides of the grid, some in two layers, and at most
+  // one for each fragment.
   const auto side = static_cast<std::uint64_t>(list.grid.longest());
   if (room == 0) room = std::min(8 * side * side, list.capacity);
   slots.room = room;

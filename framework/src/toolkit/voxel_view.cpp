@@ -23,7 +23,7 @@ std::string sizeText(const glm::ivec3& size) {
   return fmt::format("{} x {} x {}", size.x, size.y, size.z);
 }
 
-/// Work groups for so many items along each axis; a barrier follows.
+/// Dispatches one invocation for each item along each axis; a barrier follows.
 template <class Variant>
 void run(const VoxelCanvas& canvas, const Variant& variant, const shader::BindingSet& bindings,
          const glm::ivec3& items) {
@@ -154,7 +154,7 @@ void VoxelField::take(const VoxelCanvas& canvas, const VoxelsRead& source) {
   textures_[0]->uploadFloats(0, values);
 }
 
-/// Refused where it does not fit.
+/// Error if it does not fit into memory.
 void VoxelField::makeVolume(const VoxelCanvas& canvas, gpu::Format format) {
   const glm::ivec3& size = box_.resolution;
   textures_.fill(canvas.texture({gpu::TextureKind::d3, format, size.x, size.y, size.z}, "values of voxels"));

@@ -35,7 +35,7 @@ openvdb::GridBase::Ptr readGrid(std::string_view bytes, const std::string& name,
   try {
     MemoryBuffer buffer(bytes);
     std::istream stream(&buffer);
-    // OpenVDB does not look whether its stream has ended, and would go on with sizes that it never read.
+    // OpenVDB does not check for the end of its stream and would use sizes that it never read.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids();
     for (const openvdb::GridBase::Ptr& one : *grids) {
