@@ -7,7 +7,7 @@
 namespace lumivox {
 namespace {
 
-/// One is being written; a second keeps the thread at work, a third would only take memory.
+/// Beside the image being written, one waiting image keeps the thread busy; more would only take memory.
 constexpr std::size_t kMostWaiting = 1;
 
 }  // namespace
@@ -34,7 +34,7 @@ void BackgroundWriter::submit(std::function<void()> write) {
   if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   changed_.wait(lock, [this] { return waiting_.size() < kMostWaiting || failed_; });
   throwFailure();
-  if (failed_) return;  // told before
+  if (failed_) return;  // the failure was reported before
   waiting_.push_back(std::move(write));
   lock.unlock();
   changed_.notify_all();
@@ -66,7 +66,7 @@ void BackgroundWriter::run() {
     } catch (...) {
       failure = std::current_exception();
     }
-    write = nullptr;  // its images go before the next are taken
+    write = nullptr;  // frees its images before the next are taken
     lock.lock();
     busy_ = false;
     if (failure) {

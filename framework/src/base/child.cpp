@@ -23,14 +23,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The bytes of standard error that are kept.
+/// The number of kept bytes of standard error.
 constexpr std::size_t kWordsKept = 4096;
 
 }  // namespace
 
 Child::Child(const std::vector<std::string>& words, const std::vector<std::string>& environment) {
   int requests[2], answers[2], messages[2];
-  // A socket, since writing into one whose other end is gone can be told not to raise a signal.
+  // A socket, because a write to a closed socket can be told not to raise a signal.
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, requests) != 0 || pipe2(answers, O_CLOEXEC) != 0 ||
       pipe2(messages, O_CLOEXEC) != 0)
     throw Error(fmt::format("cannot start '{}': {}", words.at(0), std::strerror(errno)));
@@ -38,7 +38,7 @@ Child::Child(const std::vector<std::string>& words, const std::vector<std::strin
     for (const int file : files) close(file);
   };
   try {
-    // A group of its own, so that what it starts ends with it.
+    // In a process group of its own, so that its children end with it.
     process_ = startProcess({words, environment, requests[1], answers[1], messages[1], true});
   } catch (const Error&) {
     closeAll({requests[0], requests[1], answers[0], answers[1], messages[0], messages[1]});
@@ -66,7 +66,7 @@ void Child::send(const std::string& line) {
 
 bool Child::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    // Meanwhile it must not have to wait for somebody who reads what it says.
+    // Its messages are read meanwhile, so that it never waits for a reader.
     pollfd files[] = {{requests_, POLLOUT, 0}, {messagesOpen_ ? messages_ : -1, POLLIN, 0}};
     poll(files, 2, -1);
     if (files[1].revents != 0) readMessages();
@@ -121,7 +121,7 @@ Child::Answer Child::receive(double seconds) {
 
 void Child::waitForEnd() {
   if (status_) return;
-  // Its own children end with it, while its number is still its own.
+  // Its children are killed before its process number can be reused.
   siginfo_t information{};
   while (waitid(P_PID, static_cast<id_t>(process_), &information, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
   }

@@ -1,4 +1,4 @@
-// A process of its own that is fed through its standard input and answers line by line. It ends with this one
+// A child process that reads requests from standard input and answers line by line. It ends with this process
 // (lumivox/base/start_process.h).
 #pragma once
 
@@ -15,18 +15,18 @@ namespace lumivox {
 
 class Child {
  public:
-  /// Starts the words as a command line, found without a search path, with these "NAME=value" over the
-  /// environment. Error when that fails.
+  /// Starts a command line; its first word is a path, not searched for. `environment`: "NAME=value" entries
+  /// that override the present ones. Error if it cannot be started.
   Child(const std::vector<std::string>& words, const std::vector<std::string>& environment);
   ~Child();  ///< kills it and everything that it started
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// A child that is gone does not answer; that is found out by receive().
+  /// Writing to a dead child is no error: receive() finds out.
   void send(const std::string& line);
-  /// Bytes for its standard input; waits while it does not read them. False when it reads no more.
+  /// Writes to its standard input and waits until it has read. False if it no longer reads.
   bool write(std::span<const std::byte> bytes);
-  /// The end of its standard input.
+  /// Closes its standard input.
   void closeInput();
 
   enum class State { answered, ended, silent };
@@ -34,15 +34,15 @@ class Child {
     State state = State::silent;
     std::string line;
   };
-  /// Waits for a line at most so long, in s.
+  /// Waits for a line, at most `seconds`.
   Answer receive(double seconds);
   /// After `ended`: "killed by signal 6 (Aborted)", "ended with exit code 3".
   std::string ending();
-  /// After `ended`: by itself, with exit code 0.
+  /// After `ended`: whether it ended by itself with exit code 0.
   bool succeeded();
   /// The last lines that it wrote to standard error.
   std::string lastWords() const;
-  /// Standard error from here on.
+  /// Drops the kept standard error.
   void forgetWords() { errors_.clear(); }
 
  private:

@@ -20,7 +20,7 @@ std::string zlibStream(std::string_view bytes, int level) {
 }
 
 Deflated Deflated::of(std::string_view bytes) {
-  // Measured on the committed shaders: level 12 makes them a twentieth smaller in ten times the time.
+  // Measured on the committed shaders: level 12 takes ten times as long for packs that are 5 % smaller.
   constexpr int kLevel = 8;
   return ofStream(zlibStream(bytes, kLevel), bytes.size());
 }
@@ -40,7 +40,7 @@ std::string Deflated::expanded() const {
       libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw Error("no memory is left to expand deflated data");
   std::string bytes(expandedBytes, '\0');
-  // Without a place for the size it asks for exactly as many bytes.
+  // A null size pointer requires exactly this many bytes.
   if (libdeflate_zlib_decompress(decompressor.get(), stream.data(), stream.size(), bytes.data(), bytes.size(),
                                  nullptr) != LIBDEFLATE_SUCCESS)
     throw Error(fmt::format("deflated data is damaged: it does not expand to {} bytes", expandedBytes));

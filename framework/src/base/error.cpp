@@ -44,8 +44,8 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
   return more.empty() ? text : text + '\n' + more;
 }
 
-/// Checks run one after the other over the whole text; a reader goes from top to bottom. Files keep the order
-/// in which they came up.
+/// Sorts findings by line, since each check runs over the whole text but a reader goes from top to bottom.
+/// Files keep their order of appearance.
 std::vector<Diagnostic> inTextOrder(std::vector<Diagnostic> diagnostics) {
   std::map<std::string, std::size_t> fileOrder;
   for (const Diagnostic& diagnostic : diagnostics) fileOrder.emplace(diagnostic.place.file, fileOrder.size());
@@ -61,7 +61,7 @@ DiagnosticsError::DiagnosticsError(std::vector<Diagnostic> diagnostics)
     : Error(joined(inTextOrder(diagnostics))), diagnostics_(inTextOrder(std::move(diagnostics))) {}
 
 std::size_t shownFindings(std::size_t count) {
-  // One more is shown rather than counted.
+  // If only one more is left, it is shown, not counted.
   return count <= kMostFindingsShown + 1 ? count : kMostFindingsShown;
 }
 
@@ -81,15 +81,15 @@ std::string listed(const std::vector<std::string>& words) {
 
 namespace {
 
-constexpr std::size_t kLongestWord = 64;  ///< of which slips of the pen are looked for
+constexpr std::size_t kLongestWord = 64;  ///< longest word for which similar words are searched
 
-/// Edit distance with neighbouring letters swapped counted as one slip (optimal string alignment), where it
-/// is at most `limit`; any larger number where it is more. Words of at most kLongestWord letters.
+/// Edit distance in which a swap of neighbouring letters counts as one edit (optimal string alignment).
+/// Distances above `limit` give some larger number. Words have at most kLongestWord letters.
 std::size_t slipsBetween(const std::string& a, const std::string& b, std::size_t limit) {
   const std::size_t more = limit + 1;
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > limit) return more;
-  // Rows of the table: this one and the two before it. Beyond the band around the diagonal lie only larger
-  // ones.
+  // The current row of the table and the two before it. Outside of the band around the diagonal all distances
+  // exceed the limit.
   std::array<std::array<std::size_t, kLongestWord + 1>, 3> rows;
   for (auto& row : rows) row.fill(more);
   for (std::size_t j = 0; j <= std::min(b.size(), limit); ++j) rows[0][j] = j;
@@ -112,7 +112,7 @@ std::size_t slipsBetween(const std::string& a, const std::string& b, std::size_t
       }
       least = std::min(least, row[j]);
     }
-    // A swap reaches over one row, and adds one.
+    // A swap skips a row and costs one edit.
     if (least > limit && leastBefore >= limit) return more;
     leastBefore = least;
   }
@@ -124,10 +124,10 @@ std::size_t slipsBetween(const std::string& a, const std::string& b, std::size_t
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
   if (word.empty() || word.size() > kLongestWord) return {};
   std::string best;
-  // A slip of the pen changes at most a third of the letters.
+  // A typing error changes at most a third of the letters.
   std::size_t bestDistance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
-    if (bestDistance == 1) break;  // none is nearer
+    if (bestDistance == 1) break;  // no word can be nearer
     if (candidate == word || candidate.size() > kLongestWord) continue;
     const std::size_t d = slipsBetween(word, candidate, bestDistance - 1);
     if (d < bestDistance && d < std::max(word.size(), candidate.size())) {
@@ -136,7 +136,7 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
     }
   }
   if (!best.empty()) return best;
-  // The beginning of one is the other: "degrees" for "deg".
+  // One word is the beginning of the other: "degrees" for "deg".
   constexpr std::size_t kLeastBeginning = 3;
   const auto isBeginning = [&](const std::string& candidate) {
     const std::size_t common = std::min(word.size(), candidate.size());

@@ -28,7 +28,7 @@
 namespace lumivox {
 namespace {
 
-/// A file descriptor that closes itself.
+/// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
@@ -56,8 +56,8 @@ const char* kindOf(mode_t mode) {
   return "no regular file";
 }
 
-/// The files that this process has read, by device, inode and, where the system tells it, when they were
-/// made: the inode of a file that is gone is given to another one.
+/// The files that this process has read, by device, inode and, if the system tells it, time of creation: the
+/// inode of a deleted file may be reused.
 class ReadFiles {
  public:
   void add(const struct stat& status, const std::filesystem::path& path) {
@@ -91,8 +91,8 @@ ReadFiles& filesRead() {
   return files;
 }
 
-/// A regular file opened for reading. Without O_NONBLOCK the call itself would wait for the writer of a FIFO;
-/// to a regular file it means nothing.
+/// Opens a regular file for reading. O_NONBLOCK keeps open() from waiting for the writer of a FIFO; for
+/// regular files it has no effect.
 Descriptor openRegular(const std::filesystem::path& path, struct stat& status) {
   Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (file.get() < 0) fail(path, "read");
@@ -104,11 +104,11 @@ Descriptor openRegular(const std::filesystem::path& path, struct stat& status) {
   return file;
 }
 
-/// Up to `most` bytes.
+/// Reads up to `most` bytes.
 std::string readSome(const Descriptor& file, std::uint64_t expected, std::uint64_t most,
                      const std::filesystem::path& path) {
   std::string content;
-  // A little more than the stated size, to see the end; files of the kernel state none.
+  // Reads a little more than the stated size, to see the end; files of /proc state no size.
   constexpr std::uint64_t kAtLeast = 1 << 12;
   content.resize(std::min(std::max(expected + 1, kAtLeast), most));
   std::size_t size = 0;
@@ -139,11 +139,11 @@ void writeToDisk(int descriptor, std::span<const std::byte> bytes, const std::fi
   if (fsync(descriptor) != 0 && errno != EINVAL) fail(path, "write");
 }
 
-/// The target of a name to be written to, once symbolic links are followed.
+/// The target of a path to be written, after symbolic links.
 struct Target {
   std::filesystem::path path;
-  std::optional<struct stat> status;  ///< absent: there is nothing yet
-  /// A link of the kernel's table of open files (/dev/stdout, /dev/fd/3): no path, the open file itself.
+  std::optional<struct stat> status;  ///< absent: the target does not exist yet
+  /// True for links to open files (/dev/stdout, /dev/fd/3), which have no path.
   bool isOpenFile = false;
 
   bool isWrittenThrough() const {
@@ -157,7 +157,7 @@ bool isOfKernel(const std::filesystem::path& folder) {
 }
 
 Target targetOf(const std::filesystem::path& path) {
-  constexpr int kMostLinks = 40;  // as many as the kernel follows
+  constexpr int kMostLinks = 40;  // the kernel's own limit
   Target target{path, std::nullopt, false};
   for (int links = 0;; ++links) {
     struct stat status {};
@@ -187,8 +187,8 @@ Target targetOf(const std::filesystem::path& path) {
   return target;
 }
 
-/// For what is no file: one of this process's own open files continues where it is, anything else is
-/// opened.
+/// Writes to a target that is no regular file: an open file of this process continues at its position, others
+/// are opened.
 void writeThrough(const Target& target, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   std::cout.flush();
   std::fflush(stdout);
@@ -210,14 +210,14 @@ void writeThrough(const Target& target, std::span<const std::byte> bytes, const 
   writeAll(file.get(), bytes, path);
 }
 
-/// A name beside the target that no other process or thread uses. It begins like the target, and is short
-/// enough wherever the target's name is.
+/// A name beside the target that no other process or thread uses. It begins like the target's name, and is
+/// short enough for the file system.
 std::filesystem::path besideName(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
   constexpr std::size_t kKept = 64;  // bytes
   std::string name = path.filename().string();
   if (name.size() > kKept) {
-    std::size_t end = kKept;  // between two characters
+    std::size_t end = kKept;  // at a character boundary
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
     name.resize(end);
   }
@@ -231,8 +231,8 @@ std::filesystem::path folderOf(const Target& target) {
 /// The new content of a file, whole and on the disk before it takes the file's name.
 class StagedFile {
  public:
-  /// Writes it beside the target, without a name where the file system can: an unnamed file vanishes by
-  /// itself when this process is killed.
+  /// Writes the content beside the target, as an unnamed file where the file system supports it: such a file
+  /// vanishes if this process is killed.
   StagedFile(const std::filesystem::path& path, std::span<const std::byte> bytes)
       : path_(path), target_(targetOf(path)), bytes_(bytes) {
     if (target_.isWrittenThrough()) return;
@@ -271,7 +271,7 @@ class StagedFile {
     if (target_.isWrittenThrough()) return;
     if (rename(beside_.c_str(), target_.path.c_str()) != 0) fail(path_, "write");
     beside_.clear();
-    // It may have the number of a file that was read and is gone.
+    // Its inode may be that of a deleted file that was read.
     struct stat status {};
     if (stat(target_.path.c_str(), &status) == 0) filesRead().remove(status, target_.path);
   }
@@ -280,7 +280,7 @@ class StagedFile {
   static constexpr mode_t kMode = 0666;
 
   void write(const Descriptor& file) const {
-    constexpr mode_t kPermissions = 0777;  // without set-user-identification and its kin
+    constexpr mode_t kPermissions = 0777;  // without the set-user-ID bit and similar
     if (target_.status && fchmod(file.get(), target_.status->st_mode & kPermissions) != 0)
       fail(path_, "write");
     writeToDisk(file.get(), bytes_, path_);
@@ -302,7 +302,7 @@ class StagedFile {
   Target target_;
   std::span<const std::byte> bytes_;
   std::optional<Descriptor> unnamed_;
-  std::filesystem::path beside_;  ///< empty: it has no name, or that of the target
+  std::filesystem::path beside_;  ///< empty: unnamed, or already renamed to the target
 };
 
 }  // namespace
@@ -315,7 +315,7 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
     throw Error(fmt::format("{}: is too large ({}); expected at most {}", path.string(), formatBytes(size),
                             formatBytes(limitBytes)));
   }
-  constexpr std::uint64_t kSmall = std::uint64_t{16} << 20;  // not worth asking for the memory there is
+  constexpr std::uint64_t kSmall = std::uint64_t{16} << 20;  // too small to query the available memory
   if (size > kSmall) requireMemory(size, path.string());
   std::string content = readSome(file, size, limitBytes + 1, path);
   if (content.size() > limitBytes) {
@@ -410,8 +410,7 @@ void requireWritable(const std::filesystem::path& file) {
   std::error_code failure;
   if (!std::filesystem::is_directory(parent, failure))
     throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
-  // Permissions do not tell all (a file system of the kernel, one mounted for reading): a file is made and
-  // removed.
+  // Permissions are not sufficient (/proc, read-only mounts), so a file is made and removed.
   const std::filesystem::path beside = besideName(target.path);
   constexpr mode_t kOwnerOnly = 0600;
   const Descriptor made(open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kOwnerOnly));
@@ -431,7 +430,7 @@ void writeFilesAtomically(std::span<const NewFile> files) {
   staged.reserve(files.size());
   for (const NewFile& file : files)
     staged.emplace_back(file.path, std::as_bytes(std::span(file.content.data(), file.content.size())));
-  // What may still fail comes before the first file has its name.
+  // All steps that may still fail come before the first rename.
   for (StagedFile& file : staged) file.nameBeside();
   for (StagedFile& file : staged) file.writeThroughNow();
   for (StagedFile& file : staged) file.take();

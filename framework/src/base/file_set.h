@@ -1,4 +1,4 @@
-// Several files that are written together.
+// Writes several files together.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@ struct NewFile {
   std::string_view content;
 };
 
-/// As writeFileAtomically (lumivox/base/file.h), for files that belong together: all of them are whole and on
-/// the disk before the first takes its name, so that a full disk leaves every old file as it was and nothing
-/// beside it. Only between the renames can a reader see new files beside old ones.
+/// Like writeFileAtomically (lumivox/base/file.h), for files that belong together. All of them are complete
+/// and on the disk before the first is renamed, so that a full disk changes nothing. Only between the renames
+/// can a reader see new files beside old ones.
 void writeFilesAtomically(std::span<const NewFile> files);
 
 }  // namespace lumivox

@@ -23,7 +23,7 @@ ImageBuffer::ImageBuffer(int width, int height, int channels, float value)
   const std::uint64_t pixelBytes = static_cast<std::uint64_t>(channels) * sizeof(float);
   const bool overflows = pixels > std::numeric_limits<std::uint64_t>::max() / pixelBytes;
   const std::uint64_t bytes = overflows ? std::numeric_limits<std::uint64_t>::max() : pixels * pixelBytes;
-  // Asking the system costs more than a small image does.
+  // Querying the system costs more than a small image.
   constexpr std::uint64_t kAlwaysFitsBytes = std::uint64_t{1} << 20;
   if (bytes > kAlwaysFitsBytes) {
     requireMemory(bytes, fmt::format("an image of {} x {} pixels with {} channels", width, height, channels));

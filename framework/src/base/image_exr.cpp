@@ -1,5 +1,5 @@
-// OpenEXR images: layers by name, attributes as text. Files pass through memory as a whole, so that a write
-// is atomic and a wrong file is refused with its own name.
+// OpenEXR images: layers by name, attributes as text. Files are read and written whole, so that writes are
+// atomic and errors name the file.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -82,19 +82,18 @@ std::string channelName(const std::string& layer, std::string_view component) {
   return layer.empty() ? std::string(component) : fmt::format("{}.{}", layer, component);
 }
 
-/// The components that make one image, in its order of channels; the first of these that a layer has
-/// completely is taken.
+/// Channel orders of images. A layer takes the first order of which it has all components.
 const std::vector<std::vector<std::string>> kComponentOrders = {
     {"R", "G", "B", "A"}, {"R", "G", "B"}, {"X", "Y", "Z"}, {"R", "G"}, {"X", "Y"}, {"U", "V"}, {"Y"}, {"R"}};
 
-/// One image to be read: the full names of its channels in order.
+/// The full channel names of one image to be read, in order.
 struct LayerPlan {
   std::string name;
   std::vector<std::string> channels;
 };
 
-/// Groups the channels of one part into layers. What belongs to no known order (depth, masks) becomes a layer
-/// of one channel under its full name, or under the layer's name when it is all that the layer has.
+/// Groups the channels of one part into layers. A channel outside of the known orders (depth, masks) becomes
+/// a layer of its own under its full name, or under the layer's name if it is the layer's only channel.
 std::vector<LayerPlan> planLayers(const Imf::ChannelList& channels) {
   std::map<std::string, std::vector<std::string>> componentsOfLayer;
   for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
@@ -141,7 +140,7 @@ std::size_t pixelTypeBytes(Imf::PixelType type) {
   return type == Imf::HALF ? 2 : 4;
 }
 
-/// How many bytes of pixels one byte of a file can stand for at most: a header that claims more is wrong.
+/// The largest ratio of pixel bytes to file bytes: a header that claims more is wrong.
 std::uint64_t mostExpansion(Imf::Compression compression) {
   switch (compression) {
     case Imf::NO_COMPRESSION:
@@ -151,13 +150,13 @@ std::uint64_t mostExpansion(Imf::Compression compression) {
     case Imf::ZIP_COMPRESSION:
     case Imf::ZIPS_COMPRESSION:
     case Imf::PXR24_COMPRESSION:
-      return 2 * 1032;  // deflate's limit; PXR24 halves at most besides
+      return 2 * 1032;  // deflate's limit, times two for PXR24
     default:
       return std::uint64_t{1} << 17;  // DWA: a deflated mean for every 8 x 8 block
   }
 }
 
-/// Everything that can be refused is refused here, before memory is taken for the pixels.
+/// Refuses bad parts before memory is allocated for the pixels.
 void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t fileBytes) {
   const Imf::Header& header = file.header(part);
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
@@ -195,8 +194,8 @@ void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t file
                 fmt::format("an EXR of {} x {} pixels with {} channels", width, height, channelCount));
 }
 
-/// The library takes a block that unpacks to fewer bytes than the header promises and leaves the rest of the
-/// pixels undefined; so the blocks of the common kinds of file are measured first.
+/// The library accepts a block that unpacks to fewer bytes than the header promises, and leaves the other
+/// pixels undefined. So blocks of the common compressions are measured first.
 void checkBlocks(Imf::InputPart& part) {
   const Imf::Header& header = part.header();
   const auto compression = header.compression();
@@ -247,7 +246,7 @@ void readPart(Imf::MultiPartInputFile& file, int partIndex, LayeredImage& result
 
   Imf::FrameBuffer frame;
   for (const LayerPlan& plan : planLayers(header.channels())) {
-    // Several parts may use the same channel names; the part's name then tells them apart.
+    // Parts with the same channel names are distinguished by the part's name.
     std::string name = plan.name.empty() ? partName : plan.name;
     if (result.layers.count(name) != 0) name = channelName(partName, plan.name);
     if (result.layers.count(name) != 0) throw Error(fmt::format("has the layer '{}' twice", name));
@@ -319,8 +318,8 @@ std::map<std::string, std::string> attributesOf(const LayeredImage& image) {
   return result;
 }
 
-/// Of the first header, which begins behind the format's number and version: no attribute reaches beyond the
-/// end of the file. OpenEXR asks for as much memory as one says.
+/// Checks that no attribute of the first header (behind magic number and version) reaches beyond the end of
+/// the file: OpenEXR allocates whatever size an attribute claims.
 void requireAttributesWithin(std::string_view bytes) {
   std::size_t at = 8;
   const auto word = [&] {
@@ -348,7 +347,7 @@ LayeredImage readExr(const std::filesystem::path& path) {
   try {
     MemoryInput stream(bytes, path.string());
     constexpr int kThreads = 0;
-    constexpr bool kRebuildTable = false;  // a file without its table of chunks was not written to its end
+    constexpr bool kRebuildTable = false;  // a file without its chunk table is incomplete
     Imf::MultiPartInputFile file(stream, kThreads, kRebuildTable);
     for (int part = 0; part < file.parts(); ++part) {
       checkPart(file, part, bytes.size());
@@ -374,7 +373,7 @@ std::map<std::string, std::string> readExrAttributes(const std::filesystem::path
   std::map<std::string, std::string> attributes;
   try {
     MemoryInput stream(bytes, path.string());
-    char begin[8];  // the format's number and its version
+    char begin[8];  // magic number and version
     stream.read(begin, sizeof(begin));
     if (!Imf::isImfMagic(begin)) throw Error("is not an OpenEXR image");
     requireAttributesWithin(bytes);
@@ -397,8 +396,8 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image) {
     if (first.empty()) throw Error(fmt::format("layer '{}' is empty", image.layers.begin()->first));
     Imf::Header header(first.width(), first.height());
     header.compression() = Imf::ZIP_COMPRESSION;
-    // Radiance hardly repeats, so a longer search finds next to nothing: within 1 % of the size of the
-    // library's own choice (4).
+    // Radiance hardly repeats, so a longer search gains almost nothing: files are within 1 % of those of the
+    // library's default level (4).
     header.zipCompressionLevel() = 1;
     Imf::FrameBuffer frame;
     for (const auto& [name, layer] : image.layers) {

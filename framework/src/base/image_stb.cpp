@@ -1,5 +1,5 @@
-// 8-bit images in by stb: PNG, JPG and TGA. stb checks neither sums nor ends, so the containers
-// are walked here first: a damaged or truncated file must not pass for an image.
+// Reads PNG, JPG and TGA by stb. stb checks neither checksums nor the end of a file, so the containers are
+// checked here first: a damaged or truncated file must be refused.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -39,8 +39,8 @@ std::uint32_t bigEndian32(Bytes bytes, std::size_t at) {
          std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
 }
 
-/// PNG specification, Sec. 5.3: chunks of length, type, data and checksum, up to IEND. Keywords and texts of
-/// tEXt (Sec. 11.3.3.2), a byte of 0 between them, are returned.
+/// Checks chunks of length, type, data and checksum up to IEND (PNG specification, Sec. 5.3). Returns
+/// keywords and texts of tEXt chunks, which a 0 byte separates (Sec. 11.3.3.2).
 std::map<std::string, std::string> checkPng(Bytes bytes) {
   constexpr std::size_t kSignature = 8, kChunkFrame = 12;
   std::map<std::string, std::string> texts;

@@ -14,7 +14,7 @@ constexpr int kInterruptions[] = {SIGINT, SIGTERM, SIGHUP};
 std::atomic<const std::string*> lastWord{nullptr};
 static_assert(std::atomic<const std::string*>::is_always_lock_free);
 
-/// Texts that were said. None is freed, since a signal may be reading it.
+/// All texts so far. None is freed, since a signal handler may be reading it.
 std::deque<std::string> wordsSaid;
 int notes = 0;
 
@@ -29,7 +29,7 @@ void endWithWord(int signal) {
 void replaceHandler(int signal, void (*from)(int), void (*to)(int)) {
   struct sigaction current {};
   sigaction(signal, nullptr, &current);
-  // Who was started to ignore it goes on ignoring it.
+  // A process that was started with the signal ignored goes on ignoring it.
   if (current.sa_handler == from) std::signal(signal, to);
 }
 
@@ -47,7 +47,7 @@ InterruptionNote::~InterruptionNote() {
 }
 
 void InterruptionNote::say(const std::string& text) {
-  // A line of its own, since "^C" or a progress bar may stand in this one.
+  // On a line of its own, since the current one may hold "^C" or a progress bar.
   wordsSaid.push_back("\n" + text + "\n");
   lastWord = &wordsSaid.back();
 }

@@ -23,10 +23,10 @@ std::atomic<LogLevel> currentLevel{LogLevel::information};
 std::atomic<std::uint64_t> warnings{0};
 std::mutex outputMutex;
 std::string* captured = nullptr;
-/// What the terminal shows below the messages; empty: nothing.
+/// The status line below the messages; empty for none.
 std::string statusLine;
 bool statusOnScreen = false;
-/// Warnings as they are written, in the order in which they came first, and where each stands in that order.
+/// Warnings with their counts in order of first appearance, and the index of each.
 std::vector<std::pair<std::string, std::uint64_t>> toldWarnings;
 std::unordered_map<std::string, std::size_t> toldAt;
 thread_local WarningCollector* collector = nullptr;
@@ -36,7 +36,7 @@ void clearStatus() {
   statusOnScreen = false;
 }
 
-/// The last column stays free, since a terminal may begin a new line behind it.
+/// The last column stays free, since some terminals wrap there.
 void drawStatus() {
   if (statusLine.empty()) return;
   clearStatus();
@@ -44,7 +44,7 @@ void drawStatus() {
   statusOnScreen = true;
 }
 
-/// Whether the warning is told for the first time.
+/// Whether the warning is new.
 bool isNews(const std::string& warning) {
   const auto [at, isNew] = toldAt.emplace(warning, toldWarnings.size());
   if (isNew)
@@ -60,7 +60,7 @@ void writeLine(std::string_view line) {
   drawStatus();
 }
 
-/// Writes a warning that is told for the first time; `head` is before its text.
+/// Writes a warning if it is new; `head` precedes its text.
 void tell(const std::string& head, const std::string& text) {
   const std::lock_guard lock(outputMutex);
   if (captured != nullptr) {
@@ -106,7 +106,7 @@ void logFinding(const Diagnostic& finding) {
 
 void logRepeatedWarnings() {
   const std::lock_guard lock(outputMutex);
-  // The lines that show the place were shown the first time.
+  // Source lines were shown with the first occurrence.
   for (const auto& [text, times] : toldWarnings)
     if (times > 1) writeLine(fmt::format("{} ({} times)", text.substr(0, text.find('\n')), times));
   toldWarnings.clear();
@@ -151,7 +151,7 @@ struct Progress::State {
   /// "rendering: 12 of 48 images, about 5 s left".
   std::string text(double secondsLeft) const { return text(what, secondsLeft); }
 
-  /// Under another name for the work, such as a shorter one.
+  /// With another label for the work, such as a shorter one.
   std::string text(const std::string& label, double secondsLeft) const {
     const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
     std::string line = unit.empty() ? fmt::format("{}: {:.0f} %", label, share * 100)
@@ -162,11 +162,11 @@ struct Progress::State {
     return line;
   }
 
-  /// With a bar before it and what is done behind it, as far as there is room.
+  /// With a bar before it and the current item behind it, if there is room.
   std::string line(double secondsLeft, const std::string& doing) const {
     std::string line = text(secondsLeft);
     const auto columns = static_cast<std::size_t>(terminalColumns(STDERR_FILENO) - 1);
-    // How much is left says more than the end of a long name.
+    // The remaining time matters more than the end of a long name.
     if (const std::size_t wide = shownWidth(line), named = shownWidth(what);
         wide > columns && named > wide - columns)
       line = text(cutTo(what, named - (wide - columns)), secondsLeft);
@@ -181,7 +181,7 @@ struct Progress::State {
     return doing.empty() ? line : cutTo(line + "; " + doing, columns);
   }
 
-  /// Whether enough time has passed since the last line; whoever gets the slot writes.
+  /// Whether enough time has passed since the last line. Only the caller that gets true writes.
   bool isDue(std::chrono::milliseconds period) {
     const auto now = Clock::now().time_since_epoch().count();
     auto last = lastShown.load();
@@ -200,7 +200,7 @@ struct Progress::State {
     told = true;
   }
 
-  /// The line goes, and a message says how long everything took.
+  /// Removes the status line and logs the total time.
   void finish() {
     if (std::exchange(finished, true)) return;
     {

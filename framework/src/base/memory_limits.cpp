@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is left of a limit.
+/// The remainder of a limit.
 std::uint64_t left(std::uint64_t limit, std::uint64_t used) {
   return limit > used ? limit - used : 0;
 }
@@ -36,7 +36,7 @@ std::optional<std::uint64_t> numberOf(const fs::path& file) {
   return numberIn(word);
 }
 
-/// Of a file of lines "name value" or "name: value kB".
+/// The number in a line "name value" or "name: value kB" of a file.
 std::optional<std::uint64_t> numberOf(const fs::path& file, const std::string& name) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
@@ -50,7 +50,7 @@ std::optional<std::uint64_t> numberOf(const fs::path& file, const std::string& n
 
 /// Names of the files of a version of control groups.
 struct GroupFiles {
-  const char *limit, *used, *reclaimable;  ///< the last a line of memory.stat
+  const char *limit, *used, *reclaimable;  ///< `reclaimable`: a line of memory.stat
 };
 constexpr GroupFiles kFirst{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"},
     kSecond{"memory.max", "memory.current", "inactive_file"};
@@ -58,12 +58,12 @@ constexpr GroupFiles kFirst{"memory.limit_in_bytes", "memory.usage_in_bytes", "t
 std::uint64_t leftInGroup(const fs::path& group, const GroupFiles& files) {
   const auto limit = numberOf(group / files.limit), used = numberOf(group / files.used);
   if (!limit || !used) return kNoLimit;
-  // Cached files are given back before anything is refused, as MemAvailable counts them.
+  // The kernel drops cached files before it refuses memory, so they count as available, as in MemAvailable.
   const std::uint64_t cached = numberOf(group / "memory.stat", files.reclaimable).value_or(0);
   return left(*limit, left(*used, cached));
 }
 
-/// The least that is left in the group and in those around it, up to the mounted one.
+/// The least remainder of the group and its parents, up to the mounted one.
 std::uint64_t leftInGroups(const fs::path& mounted, const fs::path& group, const GroupFiles& files) {
   std::uint64_t least = leftInGroup(mounted, files);
   fs::path one = mounted;
@@ -96,8 +96,8 @@ std::optional<fs::path> ownGroup(const fs::path& root, bool second) {
   return std::nullopt;
 }
 
-/// The group below a mount that shows the hierarchy from `from` on. A group outside of it, as in a container,
-/// is the mounted one itself.
+/// The path of a group relative to a mount that shows the hierarchy from `from` on. A group outside of it, as
+/// in a container, is the mounted one.
 fs::path below(const fs::path& group, const fs::path& from) {
   const fs::path relative = group.lexically_relative(from);
   return relative.empty() || *relative.begin() == ".." || relative == "." ? fs::path() : relative;

@@ -1,5 +1,5 @@
-// How much memory is left, of the machine and within the limits that somebody set. availableMemory() in
-// lumivox/base/file.h is the least of all.
+// The memory left on the machine and within limits of control groups and the process. availableMemory() in
+// lumivox/base/file.h is the minimum.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,11 @@
 
 namespace lumivox {
 
-/// Where nothing limits, or the system does not tell.
+/// Without a limit, or if the system does not tell it.
 inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-/// Bytes that the machine has left, and the control groups (cgroup v1 and v2) of this process and those
-/// around them: what all its processes share. `root`: where /proc and the mounts of control groups are; tests
-/// have their own.
+/// The least of the machine's free bytes and the remainders of this process's control groups (cgroup v1 and
+/// v2) and their parents. `root`: the folder of /proc and of the control group mounts; tests use their own.
 std::uint64_t sharedMemoryLeft(const std::filesystem::path& root = "/");
 
 /// Bytes that this process may still map (RLIMIT_AS).

@@ -28,13 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of /proc have no size to be read by.
+/// Files of /proc state no size.
 std::string contentOf(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// A file that is locked while it is open.
+/// Opens a file and locks it.
 class OpenFile {
  public:
   explicit OpenFile(const fs::path& file) {
@@ -64,7 +64,7 @@ class OpenFile {
   int handle_ = -1;
 };
 
-/// The others that hold the lock. Who waits once more for those of the last time has been told.
+/// Reports the processes that hold the lock, unless they are those of the last report.
 void tellHolders(const std::string& why) {
   static std::mutex mutex;
   static std::vector<int> told;
@@ -92,7 +92,7 @@ std::string machineIdentity() {
 }
 
 std::uint64_t startOf(int process) {
-  // proc(5): field 22, behind the name in brackets, which may hold anything.
+  // proc(5): field 22. The name in brackets before it may contain anything.
   const std::string stat = contentOf(fmt::format("/proc/{}/stat", process));
   const std::size_t bracket = stat.rfind(')');
   if (bracket == std::string::npos) return 0;
@@ -100,7 +100,7 @@ std::uint64_t startOf(int process) {
   std::istringstream fields(stat.substr(bracket + 1));
   std::string state, word;
   fields >> state;
-  if (state == "Z" || state == "X") return 0;  // ended, and nobody has looked yet
+  if (state == "Z" || state == "X") return 0;  // ended, and not yet reaped
   for (int i = 0; i < kBetween; ++i) fields >> word;
   std::uint64_t started = 0;
   fields >> started;
@@ -117,10 +117,10 @@ std::string commandOf(int process) {
 std::string processText(int process, const std::string& command, std::size_t before) {
   std::string text = fmt::format("process {}", process);
   if (command.empty()) return text;
-  constexpr std::size_t kLeast = 20;  // columns of a command that tell it
+  constexpr std::size_t kLeast = 20;  // least columns that identify a command
   const std::size_t taken = before + text.size() + 3;
   const auto columns = static_cast<std::size_t>(terminalColumns(STDERR_FILENO));
-  // What a command says after a line break would stand in a line of its own.
+  // Line breaks in a command would break the message.
   std::string line = command;
   std::replace(line.begin(), line.end(), '\n', ' ');
   return text + " (" + cutTo(line, columns > taken + kLeast ? columns - taken : kLeast) + ")";
@@ -152,7 +152,7 @@ MachineLock::MachineLock(For purpose) {
   try {
     lock_ = lockedFor(purpose);
   } catch (const Error& error) {
-    // Measuring is possible all the same.
+    // Measuring works without a lock, too.
     static std::atomic<bool> told = false;
     if (!told.exchange(true))
       logWarning("not waiting for other processes, which may disturb the times: {}", error.what());
@@ -160,8 +160,8 @@ MachineLock::MachineLock(For purpose) {
 }
 
 int MachineLock::lockedFor(For purpose) {
-  // Everybody passes the gate; who wants to take times keeps it shut until those who work are through, so
-  // that they do not come in one after the other for ever.
+  // All processes pass the gate. A process that waits to take times holds it closed until those at work have
+  // finished, so that new ones cannot keep it waiting for ever.
   const OpenFile gate(fs::path(file()) += ".gate");
   OpenFile lock(file());
   bool told = false;

@@ -1,4 +1,4 @@
-// Processes told apart on one machine, and one at a time while times are taken.
+// Identifies processes of one machine, and lets one run alone while it takes times.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,19 @@
 
 namespace lumivox {
 
-/// Start of the machine and name space of process numbers: on another one a number means nothing here.
+/// Identifies the boot and the process namespace: process numbers of others mean nothing here.
 std::string machineIdentity();
-/// When a process was started, in clock ticks since the machine was; 0: there is none, or it has ended.
+/// Start time of a process in clock ticks since boot; 0 if there is none or it has ended.
 std::uint64_t startOf(int process);
-/// Its command line; empty: there is none, or it is none of ours.
+/// Command line of a process; empty if there is none, or it belongs to another user.
 std::string commandOf(int process);
-/// What is said of a process that is waited for: "process 708 (lumivox report ..)", the command cut so that
-/// the terminal shows it in a line behind `before` columns.
+/// Describes a process: "process 708 (lumivox report ..)". The command is cut so that it fits into a terminal
+/// line behind `before` columns.
 std::string processText(int process, const std::string& command, std::size_t before = 0);
 
-/// Holds back other processes of this user on this machine. Work that keeps the processors or the device busy
-/// goes on in several processes at once; while one takes times, no other works. Whoever must wait says for
-/// whom. Locks end with their process. Where no file can be locked, that is told once and nobody is waited
-/// for.
+/// A lock among the processes of this user on this machine. Several processes may work at once; while one
+/// takes times, no other works. A waiting process reports for whom it waits. Locks end with their process. If
+/// no file can be locked, that is reported once and nobody waits.
 class MachineLock {
  public:
   enum class For { work, timing };
@@ -30,9 +29,9 @@ class MachineLock {
   MachineLock(const MachineLock&) = delete;
   MachineLock& operator=(const MachineLock&) = delete;
 
-  /// The file that is locked, in a folder of the user's own.
+  /// The lock file, in a folder of the user.
   static std::filesystem::path file();
-  /// Processes that hold a lock on it now, as far as this system tells.
+  /// Processes that hold the lock now, if the system tells.
   static std::vector<int> holders();
 
  private:

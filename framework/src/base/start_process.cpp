@@ -41,23 +41,23 @@ std::vector<std::string> environmentWith(const std::vector<std::string>& setting
   return all;
 }
 
-/// All that a child needs between fork() and the program: there it may call nothing that allocates or locks.
+/// Everything that a child needs between fork() and exec(): there it must not allocate or lock.
 struct Prepared {
   std::vector<std::string> words, variables;
   std::vector<char*> arguments, environment;
   std::array<int, 3> streams{};  ///< standard input, output, errors
   bool ownGroup = false;
-  sigset_t signals{};  ///< blocked in the thread that asked
+  sigset_t signals{};  ///< signals blocked in the calling thread
   pid_t parent = -1;
-  int failure = -1;  ///< where errno goes; closed by the program's start
+  int failure = -1;  ///< pipe that receives errno; exec() closes it
 };
 
 [[noreturn]] void becomeProgram(const Prepared& program) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // A parent that ended before this call is another one by now, and sends no signal any more.
+  // If the parent ended before this call, its death signal never comes.
   if (getppid() != program.parent) _exit(1);
   if (program.ownGroup) setpgid(0, 0);
-  // Out of the way of the numbers that they are to have.
+  // Moves descriptors away from the numbers 0 to 2.
   constexpr int kFirstOther = 3;
   std::array<int, 3> streams{};
   bool good = true;
@@ -92,11 +92,11 @@ int forked(Prepared& program, pid_t& process) {
   return reason;
 }
 
-/// The thread that starts all programs. The kernel takes the thread that called fork() for the parent, and
-/// kills the program when that thread ends; this one ends with the process.
+/// The thread that starts all programs. The death signal follows the thread that called fork(), so a thread
+/// is needed that lives as long as the process.
 class Starter {
  public:
-  /// That of this process: a process that was forked has none of its parent's threads.
+  /// The starter of this process: a forked process has none of its parent's threads.
   static Starter& ofThisProcess() {
     static std::mutex mutex;
     static Starter* starter = nullptr;
@@ -119,7 +119,7 @@ class Starter {
 
  private:
   Starter() {
-    // It gets no signal that is meant for the process.
+    // The thread receives no signals of the process.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kLeastColumns = 20;
 
-/// Where the next character begins, behind a whole character of UTF-8 or a sequence that colours.
+/// The position behind the current UTF-8 character or colour sequence.
 std::size_t next(std::string_view text, std::size_t at) {
   if (text[at] == '\x1b') {
     const std::size_t end = text.find('m', at);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLargestVideo = std::uint64_t{16} << 30;
 
-/// A folder among temporary files that goes with its owner.
+/// A temporary folder, removed with its owner.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -57,7 +57,7 @@ struct VideoWriter::State {
   fs::path encoded() const { return folder.path() / "video.mp4"; }
 
   void start() {
-    // The file name has a protocol before it, or ffmpeg would seek one in a name with a colon.
+    // The prefix file: keeps ffmpeg from reading a protocol out of a name with a colon.
     encoder.emplace(
         std::vector<std::string>{program.string(),
                                  "-hide_banner",
@@ -94,7 +94,7 @@ struct VideoWriter::State {
         std::vector<std::string>{});
   }
 
-  /// After it has read its last frame, or will read none.
+  /// Call it after the last frame, or when the encoder no longer reads.
   void requireSuccess() {
     while (encoder->receive(3600.0).state != Child::State::ended) {
     }

@@ -24,14 +24,14 @@ void dropConsequences(const Document& document, std::vector<Diagnostic>& finding
   };
   std::vector<Diagnostic> kept;
   std::remove_copy_if(findings.begin(), findings.end(), std::back_inserter(kept), follows);
-  // Two may each seem to follow from the other: a wrong text keeps a finding at least.
+  // Two findings may each seem to follow from the other; a wrong text keeps at least one.
   if (kept.empty() && !findings.empty()) kept.push_back(findings.front());
   findings = std::move(kept);
 }
 
 void reportOutside(const Document& document, const Item& item, const std::string& block,
                    std::vector<Diagnostic>& findings) {
-  // The end of the block that was never opened follows from it.
+  // The closing brace of a block that was never opened is a consequence.
   if (const auto surplus = doubtsOf(document).surplusBrace)
     findings.erase(
         std::remove_if(findings.begin(), findings.end(),

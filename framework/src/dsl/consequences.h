@@ -1,4 +1,4 @@
-// One mistake makes one finding.
+// Drops findings that follow from others, so that one mistake makes one finding.
 #pragma once
 
 #include <map>
@@ -10,21 +10,19 @@
 
 namespace lumivox::dsl {
 
-/// The part of a text that braces which are missing or too many make doubtful.
+/// The part of a text that missing or surplus braces make doubtful.
 struct Doubts {
-  std::map<std::string, int> from;          ///< by file: the line from which blocks may not be what they seem
+  std::map<std::string, int> from;          ///< by file: the first line whose blocks may be misread
   std::optional<SourcePlace> surplusBrace;  ///< a '}' that closes nothing
 };
 
-/// Reads the document and what it includes once more; empty, and at once, for a document without findings.
+/// Reads the document and its includes once more. Returns at once for a document without findings.
 Doubts doubtsOf(const Document& document);
 
-/// Drops findings that follow from others: those on the line of a syntax error, and those in doubtful lines.
-/// The document's own stay.
+/// Drops findings on the line of a syntax error and in doubtful lines. The document's own findings stay.
 void dropConsequences(const Document& document, std::vector<Diagnostic>& findings);
 
-/// One finding for all that stands at the top of a text and belongs into a block that the text lacks: at
-/// `item`, the first of it.
+/// Reports one finding, at `item`, for all top-level items that belong into a missing block.
 void reportOutside(const Document& document, const Item& item, const std::string& block,
                    std::vector<Diagnostic>& findings);
 

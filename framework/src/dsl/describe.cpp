@@ -1,4 +1,4 @@
-// Descriptions for readers, from the tables that the checker uses.
+// Descriptions of words from the tables that the checker uses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using Path = std::vector<std::string>;
 
-/// The same description at several places.
+/// One description and all places where it holds.
 struct Described {
   std::string title, lines;
   std::vector<std::string> places = {};
@@ -68,7 +68,7 @@ Described described(const BlockSpecification& block) {
   return {signature(block), std::move(text)};
 }
 
-/// Calls back for every block and every property, with the words of the blocks around it.
+/// Visits every block and property with the words of its enclosing blocks.
 struct Visitor {
   std::function<void(const BlockSpecification&, const Path&)> block;
   std::function<void(const PropertySpecification&, const Path&)> property;

@@ -1,4 +1,4 @@
-// A text as it was parsed: its values as they are written, its lines, and findings in it.
+// A parsed text: values as written, lines, and findings.
 #include "lumivox/dsl/document.h"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::string Value::written() const {
       return result + ']';
     }
     case ValueKind::range: {
-      // A unit of both ends stands once, behind the upper end.
+      // A unit that both ends share is written once, behind the upper end.
       Value low = items.at(0);
       const Value& high = items.at(1);
       if (low.unit && high.unit && low.unit->name == high.unit->name) low.unit.reset();
@@ -81,7 +81,7 @@ std::string Document::line(const SourcePlace& place) const {
 
 Diagnostic Document::finding(const SourcePlace& place, int length, std::string what, std::string expected,
                              std::string suggestion) const {
-  // A line that no terminal could show helps nobody.
+  // Longer lines are cut, since no terminal shows them.
   constexpr int kLongestShownLine = 240;
   Diagnostic result;
   result.place = place;
@@ -90,7 +90,7 @@ Diagnostic Document::finding(const SourcePlace& place, int length, std::string w
   result.suggestion = std::move(suggestion);
   result.length = std::max(1, length);
   if (place.line > 0 && place.column <= kLongestShownLine) {
-    result.sourceLine = line(place).substr(0, kLongestShownLine);  // a copy, which keeps no long line alive
+    result.sourceLine = line(place).substr(0, kLongestShownLine);  // copied, so that no long line is kept
     result.length =
         std::clamp(static_cast<int>(result.sourceLine.size()) + 1 - place.column, 1, result.length);
   }

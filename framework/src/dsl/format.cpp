@@ -1,5 +1,5 @@
-// The canonical layout. Line breaks between statements are the writer's; blanks, indentation, units and the
-// alignment of neighbouring one-line blocks are ours. What gets too long is broken at its statements.
+// The canonical layout. It keeps line breaks between statements, and sets blanks, indentation, units and the
+// alignment of neighbouring one-line blocks. Lines that are too long break between statements.
 #include <algorithm>
 #include <cassert>
 
@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kLineWidth = 110;
 constexpr std::size_t kIndent = 2;
 
-/// Characters, not bytes.
+/// Width in characters, not bytes.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
@@ -27,8 +27,7 @@ bool hasComments(const Item& item) {
   return !item.commentsBefore.empty() || !item.commentAfter.empty();
 }
 
-/// Whether a block stands on one line: its writer put it there, and it holds properties without comments
-/// only.
+/// Whether a block stays on one line: it was written so and contains only properties without comments.
 bool mayStandOnOneLine(const Block& block) {
   if (!block.commentAfterOpen.empty() || !block.commentsAtEnd.empty()) return false;
   return std::all_of(block.items.begin(), block.items.end(), [](const Item& item) {
@@ -82,7 +81,7 @@ class Formatter {
     }
   }
 
-  /// Properties that their writer put on one line.
+  /// Lays out properties that were written on one line.
   std::size_t propertyLine(const std::vector<Item>& all, std::size_t i, std::size_t depth) {
     commentLines(all[i].commentsBefore, depth);
     indent(depth);
@@ -99,7 +98,7 @@ class Formatter {
     return i + 1;
   }
 
-  /// Neighbouring one-line blocks of one word: their headers and braces stand in columns.
+  /// Aligns the headers and braces of neighbouring one-line blocks with the same word.
   std::size_t blockRun(const std::vector<Item>& all, std::size_t first, std::size_t depth) {
     std::size_t end = first + 1;
     const Block& model = *all[first].block;

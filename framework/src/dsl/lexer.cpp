@@ -212,8 +212,7 @@ class Lexer {
     finish();
   }
 
-  /// A string that is not closed ends before the first brace behind a blank: the braces of the text stay what
-  /// they are.
+  /// An unclosed string ends before the first brace behind a blank, so that braces keep their meaning.
   void endBeforeBrace() {
     std::size_t brace = openingQuote_ + 1;
     while (brace < position_ && !((source_[brace] == '{' || source_[brace] == '}') &&
@@ -307,14 +306,14 @@ class Lexer {
     }
   }
 
-  /// Whether a '{' stands behind the blanks that follow.
+  /// Whether a '{' follows after blanks.
   bool blockFollows() const {
     std::size_t at = position_;
     while (at < source_.size() && source_[at] == ' ') ++at;
     return at < source_.size() && source_[at] == '{';
   }
 
-  /// A comment or a string as other languages write it.
+  /// Reads a comment or string in the syntax of other languages.
   bool readForeign() {
     const SourcePlace place = here();
     if (peek() == '/' && (peek(1) == '/' || peek(1) == '*')) {
@@ -325,7 +324,7 @@ class Lexer {
       while (position_ < stop) peek() == '\n' ? newLine() : advance();
       return true;
     }
-    // Looked for from a quote alone, and no further than the line, so that a line is read once.
+    // Only a quote starts this search, which ends with the line, so that each line is read once.
     if (peek() != '\'') return false;
     const std::size_t quote = source_.find_first_of("'\n", position_ + 1);
     if (quote == std::string::npos || source_[quote] == '\n') return false;
@@ -381,7 +380,7 @@ class Lexer {
   Token pending_;
   std::size_t position_ = 0, openingQuote_ = 0;
   int line_ = 1, column_ = 1;
-  int strayLine_ = 0;  ///< of the last stray character: a line has one finding of them
+  int strayLine_ = 0;  ///< line of the last stray character; a line gets one finding for them
   int lineEnds_ = 0;   // since the last token or comment
   bool startsLine_ = true;
 };

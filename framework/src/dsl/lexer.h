@@ -1,5 +1,4 @@
-// Text to tokens. Comments and line structure travel with the tokens, so that the formatter can give them
-// back.
+// Splits a text into tokens. Tokens carry comments and line structure for the formatter.
 #pragma once
 
 #include <filesystem>
@@ -32,7 +31,7 @@ struct Token {
   std::vector<Comment> comments;  ///< between the token before and this one
 };
 
-/// All tokens; the last is `end`. Errors go to document.findings; what cannot be read is left out.
+/// All tokens; the last is `end`. Errors go to document.findings, and unreadable text is skipped.
 std::vector<Token> lex(Document& document);
 
 /// Document::lineStarts of a text.

@@ -40,7 +40,7 @@ class Parser {
         document_.finding(token.place, token.length, std::move(what), std::move(expected)));
   }
 
-  /// Whether the lexer has a finding on the line of the token: the parser's would follow from it.
+  /// Whether the lexer has a finding on the token's line: a finding of the parser would be its consequence.
   bool onLineOfLexer(const Token& token) const {
     return std::any_of(document_.findings.begin(), document_.findings.begin() + ofLexer_,
                        [&](const Diagnostic& finding) { return finding.place.line == token.place.line; });
@@ -55,10 +55,10 @@ class Parser {
     return token.kind == TokenKind::word && token.text.find_first_of("./*?") == std::string::npos;
   }
 
-  /// The word of a block: words and strings that follow on the same line end in '{'. A '{' at the start of
-  /// the next line is taken as a slip.
+  /// Whether a block starts here: the words and strings on this line end in '{'. A '{' at the start of the
+  /// next line is accepted with a finding.
   bool blockStarts() {
-    // Every word of a line asks for the same end, which is looked for once.
+    // All words of a line have the same end, so it is searched for once.
     if (headerEnd_ <= position_) {
       headerEnd_ = position_ + 1;
       while (headerEnd_ + 1 < tokens_.size() &&
@@ -74,7 +74,7 @@ class Parser {
 
   std::vector<Item> items(std::vector<std::string>& commentsAtEnd, int depth) {
     std::vector<Item> result;
-    int column = 0;  // of the first item that starts a line
+    int column = 0;  // column of the first item that starts a line
     while (!is(TokenKind::end)) {
       if (document_.findings.size() >= kMaximumFindings) {
         position_ = tokens_.size() - 1;
@@ -311,15 +311,15 @@ class Parser {
     return result;
   }
 
-  /// An item that stands no further in than the block around it: perhaps that block lacks its '}'.
+  /// Notes an item that is indented no further than its block: that block may lack its '}'.
   void noteOutdented() {
     if (!unclosedHere_ && !open_.empty() && now().startsLine && now().place.line > open_.back().place.line &&
         now().place.column <= open_.back().place.column)
       unclosedHere_ = open_.back();
   }
 
-  /// Items further in than the first one of their block: perhaps the property before them was meant as a
-  /// block.
+  /// Notes items indented further than the first one of their block: the property before them may be meant as
+  /// a block.
   void noteIndented(const Item& before) {
     if (missingOpen_ || !before.property) return;
     Block meant;
@@ -328,8 +328,8 @@ class Parser {
     missingOpen_ = OpenBlock{meant.title(), before.property->place, static_cast<int>(meant.word.size())};
   }
 
-  /// A '}' that ends a block of several lines behind something else on its line: perhaps it was meant for
-  /// another block. A '}' further out than its block: perhaps that block lacks its own.
+  /// Notes a '}' that ends a block of several lines behind another item on its line: it may belong to another
+  /// block. Also notes a '}' indented less than its block: that block may lack its own.
   void noteEarlyEnd(const Block& block) {
     if (!earlyEnd_ && !now().startsLine && now().place.line > block.place.line)
       earlyEnd_ = EarlyEnd{block.title(), block.place.line, now()};
@@ -338,7 +338,7 @@ class Parser {
       unclosedHere_ = OpenBlock{block.title(), block.place, static_cast<int>(block.word.size())};
   }
 
-  /// A '}' without a block, told once: where one ended too early, if that is to be seen.
+  /// Reports a '}' without a block once, at the brace that ended a block too early, if one was noted.
   void reportSurplus() {
     if (std::exchange(surplusTold_, true)) return;
     if (missingOpen_ && (!earlyEnd_ || missingOpen_->place.line <= earlyEnd_->brace.place.line)) {
@@ -361,7 +361,7 @@ class Parser {
     }
   }
 
-  /// From behind '{' to behind its '}'.
+  /// Skips from behind '{' to behind its '}'.
   void skipBlock() {
     int open = 1;
     while (open > 0 && !is(TokenKind::end)) {
@@ -409,7 +409,7 @@ class Parser {
     skipStatement();
   }
 
-  /// To the next plain word that starts a line, or a brace: one stray token makes one finding.
+  /// Skips to the next plain word that starts a line, or to a brace, so that a stray token makes one finding.
   void skipStatement() {
     while (!is(TokenKind::end) && !is(TokenKind::open) && !is(TokenKind::close) && !isPlain(now())) take();
   }
@@ -431,7 +431,7 @@ class Parser {
     if (comments.empty() || comments.front().startsLine) return {};
     std::string text = std::move(comments.front().text);
     comments.erase(comments.begin());
-    // A blank line right behind it belongs to what follows.
+    // A blank line directly behind it belongs to the next item.
     if (!comments.empty() && comments.front().text.empty()) {
       comments.erase(comments.begin());
       now_().blankLineBefore = true;
@@ -475,7 +475,8 @@ class Parser {
   std::vector<Token> tokens_;
   std::ptrdiff_t ofLexer_;  ///< findings
   std::size_t position_ = 0;
-  std::size_t headerEnd_ = 0;  ///< of blockStarts(): the first token behind the words of the last line it saw
+  std::size_t headerEnd_ =
+      0;  ///< cache of blockStarts(): the first token behind the header words of the line
   std::vector<OpenBlock> open_, unclosed_;
   std::optional<OpenBlock> unclosedHere_;  ///< the first block that seems to lack its '}'
   std::optional<OpenBlock> missingOpen_;   ///< the first statement that seems to lack its '{'
@@ -484,7 +485,7 @@ class Parser {
   Doubts doubts_;
 };
 
-/// The place of the first byte that no text holds, if any.
+/// The place of the first control character, if any.
 std::optional<SourcePlace> firstControlCharacter(const Document& document) {
   int line = 1, column = 1;
   for (const char c : document.source) {

@@ -10,7 +10,7 @@
 namespace lumivox::dsl {
 namespace {
 
-// Within what single precision holds as normal numbers, whose largest is 3.4e38 and smallest 1.2e-38.
+// Within the normal numbers of single precision, which range from 1.2e-38 to 3.4e38.
 constexpr double kSmallestMagnitude = 1e-37, kLargestMagnitude = 1e37;
 
 bool mustCarryUnit(const Dimension& dimension) {
@@ -88,7 +88,7 @@ class PropertyChecker {
         break;
     }
     if (right) return true;
-    // A value of the wrong type is the better finding.
+    // A value of the wrong type is the more helpful finding.
     if (count == 1 && isVector() && property_.values[0].kind != ValueKind::number &&
         property_.values[0].kind != ValueKind::parameter) {
       reportType(property_.values[0]);
@@ -213,14 +213,14 @@ class PropertyChecker {
     }
     const double number =
         sharedUnit_ != nullptr && !value.unit ? value.number * sharedUnit_->toBase : value.inBaseUnits();
-    // Units are decimal fractions in binary: a bound itself must pass, whatever unit it was written in.
+    // Factors of units are rounded binary fractions, but a bound itself must pass in every unit.
     const double tolerance = 1e-12 * std::abs(number);
     if (bounded && (number < specification_.low - tolerance || number > specification_.high + tolerance)) {
       return report(value.place, value.length,
                     fmt::format("{} of property '{}' is out of range", shown(value), property_.word),
                     expectation(specification_));
     }
-    // Whatever a table allows: renderers compute in single precision.
+    // Holds for all properties, because renderers compute in single precision.
     const double magnitude = std::abs(number);
     if (magnitude != 0.0 && !(magnitude >= kSmallestMagnitude && magnitude <= kLargestMagnitude)) {
       report(
@@ -241,7 +241,7 @@ class PropertyChecker {
     return alone && values.back().unit ? &*values.back().unit : nullptr;
   }
 
-  /// Units on some components but not on the last would leave the others' meaning to guesswork.
+  /// Refuses units on some components but not on the last: the meaning of the others would be a guess.
   void checkUnitsOfVector() {
     if (!isVector() || specification_.type == PropertyType::axisAndNumber) return;
     std::size_t withUnit = 0;

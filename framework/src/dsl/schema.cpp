@@ -97,7 +97,7 @@ class BlockChecker {
         if (findings_.size() > before) i += consequencesOf(*item.property, i + 1);
       }
     }
-    // Nothing is called missing in a text of which a part was not read.
+    // Properties count as missing only if the whole text was read.
     if (block_.closed && document_.findings.empty()) checkMissing();
   }
 
@@ -166,7 +166,7 @@ class BlockChecker {
       return false;
     const Value& last = property.values.back();
     const Property& word = *next.property;
-    // Values of the word are a property that it took along: `fov 70 degrees resolution 24 16`.
+    // Values behind the word are a property of their own: `fov 70 degrees resolution 24 16`.
     if (!word.values.empty()) {
       if (!word.values.front().isPlainWord()) return false;
       firstPlaces_.emplace(word.values.front().text, word.values.front().place);
@@ -181,7 +181,8 @@ class BlockChecker {
     return true;
   }
 
-  /// Unknown properties behind a wrong one on its line come from the same slip: `resolution 24 x 16`.
+  /// The number of unknown properties behind a wrong one on its line, which share its mistake: `resolution 24
+  /// x 16`.
   std::size_t consequencesOf(const Property& property, std::size_t next) const {
     if (specificationOf(property) == nullptr) return 0;
     std::size_t count = 0;
@@ -217,7 +218,7 @@ class BlockChecker {
       return report(property.place, length, fmt::format("'{}' is a block", property.word),
                     fmt::format("{} ... {{ ... }}", property.word));
     }
-    // Behind a number without a unit, on its line, a lone word was meant as a unit.
+    // A lone word behind a number without a unit, on its line, is taken as a unit.
     if (property.values.empty() && mayBeUnit(property, before)) {
       const std::vector<std::string> units = unitNames();
       if (const std::string unit = nearestWord(property.word, units); !unit.empty()) {
@@ -287,8 +288,8 @@ class BlockChecker {
                        first->second.text()));
   }
 
-  /// Whether an unknown word stands in for a missing one, which its own finding names: each for one. Its
-  /// values would do for the missing property, or the words are much alike.
+  /// Whether an unknown word, which has its own finding, is probably the missing one: its values fit, or the
+  /// words are similar. Each unknown word replaces one missing word.
   bool standsIn(const std::string& missing, const PropertySpecification* specification) {
     const auto stands = [&](const Stranger& stranger) {
       if (nearestWord(stranger.word, {missing}) == missing) return true;
@@ -304,7 +305,7 @@ class BlockChecker {
     return true;
   }
 
-  /// Whether the kind decides which properties there are and is not known.
+  /// Whether the kind, which decides the properties, is unknown.
   bool kindIsUnknown() const {
     if (specification_.kindProperties.empty()) return false;
     const Header header = headerOf(block_, specification_);
@@ -343,7 +344,7 @@ class BlockChecker {
     std::string word;
     const Property* property;  // null: a block
   };
-  std::vector<Stranger> strangers_;  // what no table knows
+  std::vector<Stranger> strangers_;  // items that no table knows
 };
 
 }  // namespace
@@ -355,8 +356,7 @@ void check(const Document& document, const Block& block, const BlockSpecificatio
 
 namespace {
 
-/// The block that an item at the top of a text belongs into, when the text has none of that kind: `atTop` are
-/// the words that it has there.
+/// The missing block that a top-level item belongs into. `atTop`: the words at the top level of the text.
 const BlockSpecification* missingAround(const std::set<std::string>& atTop, const std::string& word,
                                         const std::vector<BlockSpecification>& allowed) {
   for (const BlockSpecification& one : allowed) {
@@ -373,8 +373,8 @@ void check(const Document& document, const std::vector<BlockSpecification>& allo
   for (const BlockSpecification& one : allowed) known.push_back(one.word);
   std::map<std::string, SourcePlace> firstPlaces;
   std::set<std::string> present;
-  bool whole = true;     // a text that was cut off lacks nothing
-  bool outside = false;  // something stands outside that belongs inside of a missing block
+  bool whole = true;     // false for a truncated text, of which nothing counts as missing
+  bool outside = false;  // a top-level item belongs into a missing block
   std::set<std::string> misspelt, atTop;
   for (const Item& item : document.items) atTop.insert(item.block ? item.block->word : item.property->word);
   for (const Item& item : document.items) {
@@ -491,7 +491,7 @@ std::vector<double> numbersInBaseUnits(const Property& property) {
     }
   };
   collect(property.values);
-  // A unit behind the last component only holds for all; but an axis before an angle has none of its own.
+  // A unit behind the last component alone holds for all, but not for an axis before an angle.
   const bool lastOnly = !values.empty() && values.back()->unit &&
                         std::none_of(values.begin(), values.end() - 1,
                                      [](const Value* value) { return value->unit.has_value(); });

@@ -1,4 +1,4 @@
-// The words of findings and descriptions.
+// Phrases of findings and descriptions.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Anything but a folder: what is not a regular file is refused by its kind when it is read.
+/// Anything but a folder: reading refuses what is no regular file.
 bool isFile(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

@@ -1,4 +1,4 @@
-// Where model and image files are sought.
+// Searches model, image and capture files.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace lumivox {
 
-/// Seeks files named in a scene text: beside the text, then in SceneLoadOptions::assetPath, then in each
+/// Searches files named in a scene text: beside the text, then in SceneLoadOptions::assetPath, then in each
 /// directory of $LUMIVOX_ASSETS (separated by colons), then in ../shared/models beside the project that holds
 /// the text and beside the one that the program comes from.
 class AssetSearch {
@@ -20,10 +20,10 @@ class AssetSearch {
   std::optional<std::filesystem::path> find(const std::string& name) const;
   /// As find(), for folders too.
   std::optional<std::filesystem::path> findAny(const std::string& name) const;
-  /// Every place where `name` was sought, for messages.
+  /// Every place where `name` is searched, for messages.
   std::string soughtAt(const std::string& name) const;
-  /// Whether `name` is meant to be beside the text, so that its absence is an error of the text: its folder
-  /// is there.
+  /// Whether `name` should be beside the text because its folder exists there: then its absence is an error
+  /// of the text.
   bool isLocal(const std::string& name) const;
   /// The nearest existing file name in the local folder, or empty.
   std::string nearestLocal(const std::string& name) const;

@@ -17,7 +17,7 @@
 namespace lumivox {
 namespace {
 
-constexpr double kLongestSide = 65535.0;  // that AtlasTexel::x and y can count
+constexpr double kLongestSide = 65535.0;  // the largest value of AtlasTexel::x and y
 constexpr std::uint32_t kNobody = SurfaceAtlas::kNoChart;
 
 [[noreturn]] void tooLarge(double texels) {
@@ -25,7 +25,7 @@ constexpr std::uint32_t kNobody = SurfaceAtlas::kNoChart;
                           texels, kMostAtlasTexels));
 }
 
-/// An object's triangles at rest in the world, and which share edges.
+/// The triangles of an object at rest in world space, with their neighbours.
 struct Patch {
   WeldedObject welded;
   std::vector<glm::dvec3> places;                    ///< m
@@ -48,14 +48,14 @@ struct Patch {
   const glm::dvec3& at(std::size_t triangle, std::size_t corner) const {
     return places[welded.corners[3 * triangle + corner]];
   }
-  /// By the barycentric coordinates of the second and third corner.
+  /// The point with these barycentric coordinates of the second and third corner.
   glm::dvec3 point(std::size_t triangle, const glm::dvec2& weights) const {
     return at(triangle, 0) + weights.x * (at(triangle, 1) - at(triangle, 0)) +
            weights.y * (at(triangle, 2) - at(triangle, 0));
   }
 
  private:
-  /// Sides between the same places, two by two; a third at the same edge starts a chart of its own.
+  /// Pairs sides with the same end points. A third triangle at an edge starts a chart of its own.
   void connect() {
     struct Side {
       std::uint32_t low, high, triangle, number;
@@ -92,7 +92,7 @@ struct Plane {
   }
 };
 
-/// Along the first side of the chart's first triangle, so that rectangles stay upright.
+/// One axis runs along the first side of the chart's first triangle, so that rectangles stay axis-aligned.
 Plane planeOf(const Patch& patch, std::uint32_t seed) {
   glm::dvec3 side = patch.at(seed, 1) - patch.at(seed, 0);
   if (glm::dot(side, side) == 0.0) side = patch.at(seed, 2) - patch.at(seed, 0);
@@ -111,19 +111,20 @@ struct Chart {
   int width = 0, height = 0;
 };
 
-/// Whether the ray from `point` towards growing x crosses the edge; the same for both directions of the edge.
+/// Whether the ray from `point` along +x crosses the edge, independent of the edge's direction.
 bool crosses(glm::dvec2 a, glm::dvec2 b, const glm::dvec2& point) {
   if ((a.y <= point.y) == (b.y <= point.y)) return false;
   if (b.y < a.y) std::swap(a, b);
   return point.x < a.x + (b.x - a.x) * ((point.y - a.y) / (b.y - a.y));
 }
 
-/// Each point of the plane lies in exactly one of the triangles that fill a neighbourhood of it.
+/// Of triangles that tile the plane, exactly one contains each point.
 bool inside(const Triangle2d& t, const glm::dvec2& point) {
   return crosses(t[0], t[1], point) != (crosses(t[1], t[2], point) != crosses(t[2], t[0], point));
 }
 
-/// Separating axes of a triangle and a unit square around `centre` that overlap in their bounds.
+/// Separating axis test of a triangle and the unit square around `centre`. Precondition: their bounds
+/// overlap.
 bool touches(const Triangle2d& t, const glm::dvec2& centre) {
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec2 side = t[(k + 1) % 3] - t[k], axis(-side.y, side.x);
@@ -142,7 +143,7 @@ glm::dvec2 nearestIn(const Triangle2d& t, const glm::dvec2& point) {
     const glm::dvec2 weights((p.x * e2.y - p.y * e2.x) / doubleArea, (e1.x * p.y - e1.y * p.x) / doubleArea);
     if (weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0) return weights;
   }
-  // The nearest point of the three sides.
+  // Otherwise the nearest point lies on a side.
   double nearest = std::numeric_limits<double>::infinity();
   glm::dvec2 result(0.0);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -215,7 +216,7 @@ void forEachTexel(const Triangle2d& t, int width, int height, Visit&& visit) {
 
 struct PackedChart {
   int width, height;
-  std::size_t firstTexel, texelCount;  ///< of AtlasMaker::texels, in places of the chart
+  std::size_t firstTexel, texelCount;  ///< range in AtlasMaker::texels, with places in the chart
 };
 
 class AtlasMaker {
@@ -272,13 +273,13 @@ class AtlasMaker {
     }
   }
 
-  /// Before memory is taken.
+  /// Refuses too many texels before memory is allocated.
   void checkArea(const Patch& patch) {
     for (const double area : patch.areas) area_ += area / (texelSize_ * texelSize_);
     if (!(area_ <= static_cast<double>(kMostAtlasTexels))) tooLarge(area_);
   }
 
-  /// Triangles around the seed, nearest first. The seed is the first.
+  /// Grows a chart from the seed, nearest triangles first; the seed comes first.
   static std::vector<std::uint32_t> grow(const Patch& patch, std::uint32_t seed, std::vector<bool>& taken) {
     const double cosine = std::cos(kLargestChartTilt);
     std::vector<std::uint32_t> triangles{seed};
@@ -286,7 +287,7 @@ class AtlasMaker {
     for (std::size_t i = 0; i < triangles.size(); ++i)
       for (const std::uint32_t next : patch.beyond[triangles[i]]) {
         if (next == kNobody || taken[next]) continue;
-        // Triangles without area lie on the sides of their neighbours and go with any of them.
+        // Triangles without area lie on sides of their neighbours and join any chart.
         const glm::dvec3& normal = patch.normals[next];
         if (normal != glm::dvec3(0.0) && glm::dot(normal, patch.normals[seed]) < cosine) continue;
         taken[next] = true;
@@ -295,7 +296,7 @@ class AtlasMaker {
     return triangles;
   }
 
-  /// Turned so that its rectangle is small.
+  /// Projects the chart and turns it so that its rectangle is small.
   Chart project(const Patch& patch, std::vector<std::uint32_t> triangles, std::uint32_t seed) const {
     constexpr int kTurns = 8;
     const Plane upright = planeOf(patch, seed);
@@ -313,14 +314,14 @@ class AtlasMaker {
         }
       const glm::dvec2 size = high - low;
       const double area = (size.x + 1.0) * (size.y + 1.0);
-      // Not for rounding alone.
+      // Only a real difference counts, not rounding.
       if (area < smallest * (1.0 - 1e-6)) smallest = area, best = plane, bestLow = low, bestSize = size;
     }
     if (!(smallest <= static_cast<double>(kMostAtlasTexels) &&
           std::max(bestSize.x, bestSize.y) < kLongestSide))
       tooLarge(smallest);
     Chart chart{std::move(triangles), {}, static_cast<int>(bestSize.x) + 1, static_cast<int>(bestSize.y) + 1};
-    glm::dvec2 texels(1.0 / texelSize_);  // a metre, along both axes
+    glm::dvec2 texels(1.0 / texelSize_);  // texels a metre, along both axes
     if (places_ == AtlasPlaces::middles) {
       chart.width = divide(bestSize.x, texels.x);
       chart.height = divide(bestSize.y, texels.y);
@@ -334,8 +335,8 @@ class AtlasMaker {
     return chart;
   }
 
-  /// Changes the texels along a side so that a whole number fits: where there are many a multiple of four, so
-  /// that squares of two and of four texels a side fill the chart. Returns it.
+  /// Rounds the texels along a side to a whole number, or a multiple of four if there are many, so that
+  /// squares of 2 and of 4 texels a side fill the chart. Returns that number.
   static int divide(double size, double& texels) {
     constexpr double kRounding = 1e-6;
     double whole = std::max(std::ceil(size - kRounding), 1.0);
@@ -347,16 +348,17 @@ class AtlasMaker {
     return static_cast<int>(whole);
   }
 
-  /// Who owns the texels of a chart's rectangle.
+  /// The owning triangles of a chart's texels, and what they cover.
   struct Ownership {
-    std::vector<std::uint32_t> owners;             ///< numbers in the chart, kNobody: nobody
-    std::vector<glm::dvec3> places;                ///< of the owner, m
-    std::vector<double> gaps;                      ///< from the texel's centre to its owner, 0 inside
-    std::vector<double> areas;                     ///< of the surface within the texel, m^2
-    std::vector<glm::dvec2> middles;               ///< of that surface, in the chart, times its area
-    std::vector<glm::dvec3> normals;               ///< of that surface, times its area
-    std::vector<double> flat;                      ///< of that surface's projection, square texels
-    std::vector<std::vector<glm::dvec2>> corners;  ///< of that projection, at least its convex hull's
+    std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNobody: nobody
+    std::vector<glm::dvec3> places;     ///< of the owner, m
+    std::vector<double> gaps;           ///< distance from the texel's centre to its owner, texels; 0 inside
+    std::vector<double> areas;          ///< of the surface within the texel, m^2
+    std::vector<glm::dvec2> middles;    ///< centroid of that surface in the chart, times its area
+    std::vector<glm::dvec3> normals;    ///< normal of that surface, times its area
+    std::vector<double> flat;           ///< area of that surface's projection, square texels
+    std::vector<std::vector<glm::dvec2>>
+        corners;  ///< corners of that projection, at least those of its convex hull
     explicit Ownership(std::size_t size)
         : owners(size, kNobody),
           places(size),
@@ -373,8 +375,8 @@ class AtlasMaker {
                          piece.corners.begin() + static_cast<std::ptrdiff_t>(piece.cornerCount));
       if (corners[at].size() > kMany) corners[at] = convexHull(std::move(corners[at]));
     }
-    /// Sine of the angle between the surface's normals and their mean: normals that differ add up to less
-    /// than their areas do. 0: flat.
+    /// Sine of the mean angle between the surface's normals and their mean: normals that differ sum to less
+    /// than their areas. 0: flat.
     double bend(std::size_t at) const {
       constexpr double kFlat = 1.0 - 1e-6;
       const double cosine = areas[at] > 0.0 ? glm::length(normals[at]) / areas[at] : 1.0;
@@ -383,7 +385,7 @@ class AtlasMaker {
     static constexpr double kUntouched = std::numeric_limits<double>::infinity();
   };
 
-  /// False, and nothing is taken, when the triangle lies over others of its chart.
+  /// Gives the triangle its texels; returns false, and changes nothing, if it overlaps others of its chart.
   bool take(const Patch& patch, const Chart& chart, std::uint32_t i, Ownership& ownership) const {
     struct Claim {
       std::size_t at;
@@ -400,7 +402,7 @@ class AtlasMaker {
       if (!free || !touches(t, centre)) return;
       const glm::dvec2 weights = nearestIn(t, centre);
       const glm::dvec2 nearest = t[0] + weights.x * (t[1] - t[0]) + weights.y * (t[2] - t[0]);
-      // Exactly one triangle of a sheet has the centre inside; the others are at least at a distance above 0.
+      // Exactly one triangle of a sheet contains the centre; all others have a distance above 0.
       constexpr double kBeside = 1e-30;
       const double gap = inside(t, centre) ? 0.0 : std::max(glm::length(nearest - centre), kBeside);
       const glm::dvec3 point = patch.point(chart.triangles[i], weights);
@@ -426,7 +428,7 @@ class AtlasMaker {
     return true;
   }
 
-  /// Gives texels to triangles; returns those that lie over others and need a chart of their own.
+  /// Assigns texels to triangles; returns overlapping ones, which need a chart of their own.
   std::vector<std::uint32_t> rasterise(const Patch& patch, const Chart& chart,
                                        const std::vector<std::uint32_t>& parts) {
     const std::size_t size = static_cast<std::size_t>(chart.width) * static_cast<std::size_t>(chart.height);
@@ -481,7 +483,7 @@ class AtlasMaker {
     return outline;
   }
 
-  /// Places texels at the middle of their surface, and gives each to the triangle there.
+  /// Moves texels to the centroid of their surface and assigns each to the triangle there.
   void findMiddles(const Chart& chart, const std::vector<std::uint32_t>& rejected,
                    Ownership& ownership) const {
     constexpr double kLeast = 1e-6;  // of a texel
@@ -503,7 +505,8 @@ class AtlasMaker {
     }
   }
 
-  /// Rectangles on shelves, the highest first, in the smallest square that takes them. Returns its side.
+  /// Packs rectangles on shelves, the highest first, into the smallest square that holds them. Returns its
+  /// side, texels.
   int pack() {
     std::vector<std::size_t> order(charts_.size());
     double area = 0.0;
@@ -539,7 +542,7 @@ class AtlasMaker {
     return side;
   }
 
-  /// Counting sort: the order within a part stays that of the charts.
+  /// Counting sort by parts, which keeps the order of the charts within a part.
   void sortByParts(SurfaceAtlas& atlas, std::uint32_t partCount) const {
     atlas.parts.resize(partCount);
     for (const PlacedTexel& placed : texels_) ++atlas.parts[placed.part].texelCount;
@@ -559,9 +562,9 @@ class AtlasMaker {
   const Scene& scene_;
   const std::vector<double>& texelSizes_;  ///< m, of each object
   AtlasPlaces places_;
-  double texelSize_ = 0.0;                      ///< m, of the object at work
+  double texelSize_ = 0.0;                      ///< m, of the current object
   std::vector<std::uint32_t> chartOfTriangle_;  ///< of Scene::indices
-  double area_ = 0.0;                           ///< of all triangles so far, in texels
+  double area_ = 0.0;                           ///< texels that all triangles so far cover
   std::vector<PlacedTexel> texels_;
   std::vector<PackedChart> charts_;
 };

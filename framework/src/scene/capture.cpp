@@ -56,7 +56,7 @@ glm::dvec2 CaptureCamera::ray(const glm::dvec2& pixel) const {
     const Bent bent = bend(distortion, ray);
     const glm::dvec2 miss = wanted - bent.ray;
     const double determinant = glm::determinant(bent.slope);
-    // Beyond the turning point of the polynomial the pixel belongs to no ray of the image.
+    // Beyond the turning point of the polynomial no ray reaches the pixel.
     if (!(determinant > 0.0)) break;
     if (glm::length(miss) <= kTolerance) return ray;
     ray += glm::inverse(bent.slope) * miss;
@@ -81,7 +81,7 @@ Capture::Capture(std::string captureName, CaptureCamera pinhole, std::vector<Cap
 Capture::~Capture() = default;
 
 std::size_t Capture::frameAt(double time) const {
-  // Times of frames and of a video's frames are quotients that round differently.
+  // Times of captured and of rendered frames are quotients that round differently.
   constexpr double kRounding = 1e-6;  // s
   const auto later =
       std::upper_bound(frames.begin(), frames.end(), time + kRounding,

@@ -49,7 +49,7 @@ std::array<float, 256> tableOf(bool linear, double exposure) {
   return table;
 }
 
-/// Colour as the depth's pixels see it: both images show the same field of view.
+/// Samples the colour image at the depth's pixels. Precondition: both show the same field of view.
 void addColour(const ByteImage& colour, const std::array<float, 256>& linear, CapturedImage& image) {
   const auto channels = static_cast<std::size_t>(colour.channels);
   const auto texel = [&](int x, int y, std::size_t channel) {
@@ -161,7 +161,7 @@ class SensorRecords : public CaptureSource {
   std::array<float, 256> linear_;
 };
 
-/// What frames are hashed and weighed by.
+/// The bytes of frames: for the hash, and for the limit on their size.
 struct FrameBytes {
   std::function<std::uint64_t(const ListedFrame&)> size;
   std::function<std::string(const ListedFrame&)> read;

@@ -22,8 +22,8 @@ struct CapturePose {
   glm::dvec3 eye{0};                ///< m
 };
 
-/// A pose from numbers of a file; none where they are not finite or no rotation, as trackers mark frames that
-/// they lost. Both forms of one pose give the same bits.
+/// A pose from numbers of a file. None if they are not finite or no rotation: trackers mark lost frames so.
+/// Both forms of one pose give the same bits.
 std::optional<CapturePose> poseOf(const glm::dquat& rotation, const glm::dvec3& eye);
 std::optional<CapturePose> poseOf(const glm::dmat4& cameraToWorld);
 
@@ -40,7 +40,7 @@ struct CaptureListing {
   std::vector<ListedFrame> frames;           ///< in the order of their numbers
   bool hasTimes = false;                     ///< ListedFrame::time is set
   std::vector<std::filesystem::path> texts;  ///< files that poses and names come from
-  std::vector<std::string> remarks;          ///< what was left out before poses were looked at
+  std::vector<std::string> remarks;          ///< what was left out before poses were read
 };
 
 CaptureListing listTum(const std::filesystem::path& folder);
@@ -49,8 +49,8 @@ CaptureListing listRedwood(const std::filesystem::path& folder);
 /// `pattern` has #### in the place of the frame's number.
 CaptureListing listExr(const std::filesystem::path& pattern);
 
-/// The poses of groundtruth.txt (time tx ty tz qx qy qz qw), given to the frames by their times: interpolated
-/// (slerp) where the poses around a frame are within 50 ms of it.
+/// Gives each frame its pose from groundtruth.txt (time tx ty tz qx qy qz qw): the pose at its time, or the
+/// slerp of the poses around it if both are within 50 ms.
 void givePoses(const std::filesystem::path& groundtruth, std::vector<ListedFrame>& frames);
 
 /// A .sens file (ScanNet, version 4): its frames, and what its header says of its cameras.
@@ -94,7 +94,8 @@ double numberOf(const std::filesystem::path& file, const TextLine& line, std::si
 /// A 4 x 4 matrix of 16 numbers in rows, from `first` on.
 glm::dmat4 matrixOf(const std::filesystem::path& file, const std::vector<TextLine>& lines, std::size_t first);
 
-/// The files of a folder whose names begin and end so, by the last number between: each number once.
+/// The files of a folder with this beginning and one of these endings, sorted by the last number between.
+/// Error if two have the same number.
 std::vector<std::pair<int, std::filesystem::path>> numberedFiles(const std::filesystem::path& folder,
                                                                  const std::vector<std::string>& endings,
                                                                  const std::string& begin = {});

@@ -71,7 +71,7 @@ CaptureListing listRedwood(const fs::path& folder) {
   CaptureListing listing;
   join(numberedFiles(folder / (isFolder(folder / "color") ? "color" : "rgb"), kColourEndings),
        numberedFiles(folder / "depth", {".png"}), listing);
-  const auto numbersFromZero = [&] {  // the log counts images, whatever number their first one has
+  const auto numbersFromZero = [&] {  // the log counts images from 1, whatever their file names say
     int number = 0;
     for (ListedFrame& frame : listing.frames) frame.number = number++;
   };

@@ -86,7 +86,8 @@ std::optional<CapturePose> poseOf(const glm::dquat& rotation, const glm::dvec3& 
     return std::nullopt;
   glm::dquat unit = rotation / length;
   if (unit.w < 0.0) unit = -unit;
-  // What a matrix of the same rotation rounds differently is cut off: far below the precision of any tracker.
+  // Cuts off digits in which a matrix of the same rotation rounds differently, far below the precision of any
+  // tracker.
   constexpr double kSteps = 1099511627776.0;  // 2^40
   const auto rounded = [](double value) { return std::nearbyint(value * kSteps) / kSteps; };
   return CapturePose{glm::dquat(rounded(unit.w), rounded(unit.x), rounded(unit.y), rounded(unit.z)), eye};

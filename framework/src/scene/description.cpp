@@ -19,11 +19,10 @@ using dsl::BlockSpecification;
 using dsl::CheckedBlock;
 using dsl::Property;
 
-// Lengths of which a direction can be taken, and distances at which points are still two, with room for
-// squares.
+// Range of lengths that can be normalised, with room for squares.
 constexpr double kShortestDirection = 1e-9, kLongestDirection = 2e9;
 constexpr double kNearestTarget = 1e-9;     // m
-constexpr double kSmallestParticle = 1e-6;  // m: of smaller ones no volume is left in single precision
+constexpr double kSmallestParticle = 1e-6;  // m; the volume of smaller ones underflows single precision
 
 const BlockSpecification& specificationOf(const BlockSpecification& outer, const std::string& word) {
   return *std::find_if(outer.blocks.begin(), outer.blocks.end(),
@@ -34,7 +33,7 @@ std::string nameList(const std::vector<std::string>& names) {
   return names.empty() ? "one that is defined; there is none" : "one of " + listed(names);
 }
 
-/// Reads a text that the grammar accepts and checks what no table can say.
+/// Reads a text that the grammar accepts, and checks conditions beyond the tables.
 class Reader {
  public:
   Reader(const dsl::Document& document, std::vector<Diagnostic>& findings)
@@ -46,7 +45,7 @@ class Reader {
     for (const dsl::Item& item : scene.items) {
       if (!item.block || !known(grammar_, *item.block)) continue;
       checkReferences(*item.block);
-      // Blocks that the grammar has refused are not judged further.
+      // Blocks that the grammar refused are not checked further.
       std::vector<Diagnostic> refusals;
       dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
       if (!item.block->closed) continue;
@@ -76,7 +75,7 @@ class Reader {
                        [&](const BlockSpecification& one) { return one.word == block.word; });
   }
 
-  /// A scene says what is there: parameters belong to pipelines.
+  /// Refuses parameters, which only pipelines have.
   bool holdsParameters(const Block& block) {
     bool found = false;
     const std::function<void(const std::vector<dsl::Value>&)> look =
@@ -110,7 +109,7 @@ class Reader {
 
   void collectNames(const Block& scene) {
     for (const dsl::Item& item : scene.items) {
-      // A block that was written as a property is a finding of its own, as a misspelt one: its name is known.
+      // A block written as a property has its own finding, but its name counts as known.
       if (item.property && !item.property->values.empty()) {
         const std::string& name = item.property->values.front().text;
         if (item.property->word == "material") materialNames_.add(name);
@@ -118,7 +117,7 @@ class Reader {
         if (item.property->word == "capture") captureNames_.add(name);
       }
       if (!item.block) continue;
-      // A misspelt block is a finding of its own: its name is known all the same.
+      // A misspelt block has its own finding, but its name counts as known.
       std::string word = item.block->word;
       if (!known(grammar_, *item.block))
         word = suggestionFor(findings_, word, {"material", "mesh", "capture"});
@@ -129,7 +128,7 @@ class Reader {
     }
   }
 
-  /// Names of meshes and materials that other blocks use. Judged even where the block has other errors.
+  /// Checks the names of meshes, materials and captures that a block uses, even if it has other errors.
   void checkReferences(const Block& block) {
     const auto nameIn = [](const Property* property) -> std::optional<PlacedText> {
       if (property == nullptr || property->values.empty()) return std::nullopt;
@@ -167,8 +166,7 @@ class Reader {
     if (block.word == "capture") readCapture(checkedBlock);
   }
 
-  /// Of a refused block the files that it names, as far as they are written well: what is wrong with them can
-  /// be found all the same.
+  /// Takes the well-written file names of a refused block, so that these files can still be checked.
   void readFiles(const Block& block) {
     const CheckedBlock checkedBlock = checked(block);
     const auto fileIn = [&](const char* word, const std::vector<std::string>& formats) {
@@ -212,7 +210,7 @@ class Reader {
     return property == nullptr ? std::nullopt : std::optional(placed(*property));
   }
 
-  /// Unit length; a finding where it is too short or too long to have a direction in numbers.
+  /// A direction of unit length; a finding if the vector is too short or too long to be normalised.
   glm::dvec3 direction(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
     const glm::dvec3 value = vector(block, word, fallback);
     const double length = glm::length(value);
@@ -272,7 +270,7 @@ class Reader {
     result_.cameras.push_back(std::move(camera));
   }
 
-  /// Size 0: that of the capture's frames.
+  /// A size of 0 means that of the capture's frames.
   void readCapturedView(const CheckedBlock& block, Camera& camera) {
     for (const char* word : {"eye", "target", "up", "fov", "aperture", "focus"}) {
       if (const Property* property = block.find(word))
@@ -344,7 +342,7 @@ class Reader {
            suggestionFor(findings_, name, names.inOrder));
   }
 
-  /// A file of another format is refused by its name, before anything is read.
+  /// Refuses a file of another format by its name, before anything is read.
   void requireFormat(const PlacedText& file, const char* what, const std::vector<std::string>& formats) {
     if (hasFormat(file.text, formats)) return;
     report(file.place, file.length,
@@ -647,7 +645,7 @@ bool hasFormat(const std::string& name, const std::vector<std::string>& formats)
 }
 
 bool matches(const std::string& pattern, const std::string& name) {
-  // Greedy with one point of return: linear for the patterns that people write.
+  // Greedy, with backtracking to the last star only: linear for usual patterns.
   std::size_t p = 0, n = 0, starAt = std::string::npos, resume = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

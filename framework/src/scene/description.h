@@ -1,5 +1,5 @@
-// The content of a scene text, before any model is read. It keeps its places, so that what only a model shows
-// is reported at its line.
+// The content of a scene text before any model is read. It keeps source places, so that problems found in
+// models are reported at their lines.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct MeshText {
   std::string name;
   PlacedText file;
   std::optional<std::string> material;
-  std::vector<std::pair<Selection, std::string>> uses;  ///< what gets which material
+  std::vector<std::pair<Selection, std::string>> uses;  ///< parts and their materials
   std::vector<Selection> without;
   std::optional<double> crease;  ///< rad
   glm::dmat4 placement{1.0};
@@ -98,12 +98,12 @@ struct SceneDescription {
   std::vector<CaptureText> captures;
 };
 
-/// Checks a parsed text against the grammar and its own references; appends to `findings`. The result is
-/// whole only when there are none. Else it lacks what was refused, but for the names of refused meshes,
-/// materials and media and the files that they name, and materials that are named may be lacking.
+/// Checks a parsed text against the grammar and its references; appends to `findings`. The result is complete
+/// only without findings. Otherwise it lacks refused blocks, except for the names and files of refused
+/// meshes, materials and media, and may lack named materials.
 SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings);
 
-/// The ends of names of files that can be read.
+/// File name endings of readable formats.
 inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
 inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
 inline const std::vector<std::string> kVolumeFormats{".vdb"};

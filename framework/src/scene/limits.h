@@ -9,8 +9,8 @@ inline constexpr double kMostLight = 1e15;
 /// Beyond it Phong lobes are narrower than single precision resolves: cos^n of one ulp below 1 is already
 /// exp(-n 6e-8).
 inline constexpr double kLargestExponent = 1e6;
-/// Of Kd, Ks, d and Tr in material files, which are used as given: far above 1, and the light of a few
-/// bounces is still a number.
+/// Limit of Kd, Ks, d and Tr in material files, which are used as given: far above 1, but small enough that
+/// the light of a few bounces stays finite.
 inline constexpr double kLargestGivenAlbedo = 1e3;
 
 }  // namespace lumivox

@@ -1,4 +1,4 @@
-// From a description to a scene: models are read, materials and lights given to their parts, motion to their
+// Turns a description into a scene: reads models, assigns materials and lights to parts and motion to
 // objects.
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ std::vector<std::string> fileNames(const MeshText& mesh) {
   return names;
 }
 
-/// Whether the file of a mesh can be read whatever else the text says of it.
+/// Whether the file of a mesh can be read although its block has findings.
 bool namesOneFile(const MeshText& mesh) {
   return !mesh.sequence && mesh.file.text.find('#') == std::string::npos &&
          hasFormat(mesh.file.text, kModelFormats);
@@ -60,10 +60,10 @@ std::string posesBeside(const std::string& pattern) {
   return (fs::path(pattern).parent_path() / "groundtruth.txt").string();
 }
 
-/// A scene is read to be rendered, and the first bad file ends it; or to find all that is wrong.
+/// Loading for rendering ends at the first bad file; a check goes on to find all problems.
 enum class Purpose { rendering, checking };
 
-/// Files that should stand beside the text and do not; for a check, those that stand nowhere.
+/// Reports files that should be beside the text and are not; a check reports those that are nowhere.
 void findMissingFiles(const dsl::Document& document, const SceneDescription& description,
                       const AssetSearch& assets, Purpose purpose, std::vector<Diagnostic>& findings) {
   const auto isMissing = [&](const std::string& name) {
@@ -90,7 +90,7 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
   for (const CaptureText& capture : description.captures) {
     if (capture.standsFor) require(*capture.standsFor, capture.standsFor->text, "scene", kSceneFormats);
     if (capture.file) require(*capture.file, capture.file->text, "capture", kSensorFormats);
-    // A pattern of files stands for the poses beside them.
+    // For a pattern of files, the poses beside them must exist.
     if (capture.folder || capture.files) {
       const PlacedText& place = capture.source();
       const std::string name = capture.folder ? place.text : posesBeside(place.text);
@@ -178,8 +178,8 @@ class Loader {
                                           nearestWord(place.text, known)));
   }
 
-  /// Reads a file that the text names there. For a check an error becomes a finding at that place, and so do
-  /// warnings; false: there was an error.
+  /// Reads a file that the text names at this place. In a check, errors and warnings become findings there.
+  /// Returns false after an error.
   template <class Work>
   bool attempt(const std::optional<PlacedText>& file, const Work& work) {
     if (purpose_ == Purpose::rendering) {
@@ -197,7 +197,7 @@ class Loader {
     } catch (const DiagnosticsError& error) {
       findings_.insert(findings_.end(), error.diagnostics().begin(), error.diagnostics().end());
       good = false;
-    } catch (const AbsentError&) {  // findMissingFiles() has told
+    } catch (const AbsentError&) {  // findMissingFiles() has reported it
       good = false;
     } catch (const Error& error) {
       findings_.push_back(here(error.what()));
@@ -224,7 +224,7 @@ class Loader {
     return entry->second;
   }
 
-  /// Where the text has findings, a material may be missing that is named.
+  /// A named material may be missing if the text has findings.
   const MaterialText* textMaterial(const std::string& name) const {
     static const MaterialText missing;
     const auto found = textMaterials_.find(name);
@@ -258,7 +258,7 @@ class Loader {
     scene_.captures.push_back(capture);
   }
 
-  /// Views of captures without a resolution have that of the frames.
+  /// Gives cameras of captures without a resolution the size of the frames.
   void sizeCapturedViews() {
     for (Camera& camera : scene_.cameras) {
       if (camera.capture < 0 || static_cast<std::size_t>(camera.capture) >= scene_.captures.size()) continue;
@@ -267,7 +267,7 @@ class Loader {
     }
   }
 
-  /// A medium that fills the scene needs something that has bounds.
+  /// Refuses a medium that fills the scene if the scene has no bounds.
   void checkMediaBounds() {
     const bool hasTriangles = std::any_of(scene_.objects.begin(), scene_.objects.end(),
                                           [](const Object& object) { return !object.parts.empty(); });
@@ -335,7 +335,7 @@ class Loader {
 
   static std::string objectName(const MeshText& mesh, const Model& model, const ModelObject& part) {
     if (!part.name.empty()) return mesh.name + '/' + part.name;
-    // "default" is the group of OBJ files for what stands before the first name.
+    // "default" is the group of OBJ faces before the first name.
     return model.objects.size() == 1 ? mesh.name : mesh.name + "/default";
   }
 
@@ -376,7 +376,7 @@ class Loader {
     return useNumber({nullptr, &material, mesh.name + '/' + material.values.name, std::nullopt});
   }
 
-  /// Selections that select nothing are slips.
+  /// Reports selections that select nothing.
   void requireSelections(const MeshText& mesh, const Model& model) {
     if (mesh.uses.empty() && mesh.without.empty()) return;
     std::vector<std::string> parts, mtls;
@@ -442,7 +442,7 @@ class Loader {
     }
   }
 
-  /// Only what some part uses becomes a material of the scene, so that traits tell what is there.
+  /// Only used materials become materials of the scene, so that traits reflect its content.
   void finishMaterials() {
     std::map<int, int> numbers;
     for (Object& object : scene_.objects) {
@@ -488,7 +488,7 @@ class Loader {
     return material;
   }
 
-  /// The image that an MTL file names; DiagnosticsError with the line there when it is none that can be read.
+  /// The image that an MTL file names; DiagnosticsError at its line if the image cannot be read.
   static fs::path mapFile(const ModelMaterial& model, const char* statement, const std::string& name) {
     const fs::path file = model.mtlFile.parent_path() / name;
     std::error_code error;
@@ -603,7 +603,7 @@ void checkScene(const fs::path& file, const SceneLoadOptions& options) {
   const SceneDescription description = describeScene(document, findings);
   const bool isWhole = findings.empty();
   findMissingFiles(document, description, assets, Purpose::checking, findings);
-  // Behind more findings than are shown nobody waits for what is in the files.
+  // With more findings than are shown, files are not checked.
   if (isWhole || findings.size() <= kMostFindingsShown) {
     Loader loader(document, description, isWhole, assets, options, Purpose::checking);
     try {

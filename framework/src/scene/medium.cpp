@@ -39,13 +39,13 @@ ParticleClock particleClock(const Medium& medium, double time) {
   const double lives = time / medium.life, whole = std::floor(lives);
   ParticleClock clock;
   clock.lives = static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
-  // Rounding up to a whole life would give an age that no particle has.
+  // Rounding must not reach a whole life, an age that no particle has.
   clock.share = std::min(static_cast<float>(lives - whole), 0x1.fffffep-1f);
   return clock;
 }
 
 glm::vec4 particleAt(const Medium& medium, const ParticleClock& clock, std::uint32_t index) {
-  // The first of a particle's hashes says when in a life it is born; each life then has two of its own.
+  // A particle's first hash gives its birth within a life; each life uses two further hashes.
   const float birth = static_cast<float>(hash4({index, 0u, medium.seed, 0u}).x >> 8) * 0x1.0p-24f;
   float lived = clock.share + birth;
   std::uint32_t life = clock.lives;

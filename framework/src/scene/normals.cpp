@@ -35,7 +35,7 @@ FaceGeometry faceGeometry(const std::vector<glm::vec3>& positions,
 
 struct PositionHash {
   std::size_t operator()(const glm::vec3& p) const {
-    // +0 joins -0 with 0, which compare equal.
+    // Adding +0 maps -0 to 0, since both compare equal.
     std::uint64_t hash = 0x9E3779B97F4A7C15ull;
     for (int i = 0; i < 3; ++i)
       hash = (hash ^ std::bit_cast<std::uint32_t>(p[i] + 0.0f)) * 0xBF58476D1CE4E5B9ull;
@@ -43,7 +43,7 @@ struct PositionHash {
   }
 };
 
-/// The corners at each different position: files do not always share vertices between neighbouring faces.
+/// The corners at each distinct position, since files may not share vertices between neighbouring faces.
 struct CornerLists {
   std::vector<std::uint32_t> start, corners, pointOfCorner;
 };
@@ -77,12 +77,12 @@ CornerLists cornersAtPoints(const std::vector<glm::vec3>& positions,
 
 NormalGroups groupNormals(const std::vector<glm::vec3>& positions,
                           const std::vector<std::uint32_t>& triangles, double crease) {
-  // Comparing every face at a point with every other is quadratic; at a point where more meet than this,
-  // faces stay flat.
+  // Comparing all faces at a point is quadratic. Where more faces meet than this, they stay flat.
   constexpr std::size_t kMostFacesAtPoint = 512;
   const FaceGeometry faces = faceGeometry(positions, triangles);
   const CornerLists lists = cornersAtPoints(positions, triangles);
-  // Faces of one plane differ by rounding; 1e-6 is a tenth of a degree at zero and nothing elsewhere.
+  // Normals in one plane differ by rounding; 1e-6 is 0.1 degrees at an angle of zero and negligible
+  // elsewhere.
   const double least = std::cos(crease) - 1e-6;
   NormalGroups result;
   result.start.push_back(0);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The albedo of a surface without a material file: the neutral grey of the usual scans.
+// Albedo of surfaces without a material file: the neutral grey that is common for scans.
 constexpr float kUnknownAlbedo = 0.8f;
 
 glm::vec3 vectorOf(const tinyobj::real_t* values) {
@@ -73,7 +73,7 @@ class MaterialTable {
   }
 
   void addUnknown(const std::string& name, const std::vector<std::string>& files) {
-    // Where a material file is missing, that has been told.
+    // A missing material file was reported before.
     if (options_.needsMaterials && !fileMissing_) {
       complain(fmt::format("{}: material '{}' is in none of its material files ({}); grey {} is used instead",
                            objFile_.string(), name,
@@ -84,7 +84,7 @@ class MaterialTable {
     table_.push_back(grey(name));
   }
 
-  /// A line names one file, perhaps with blanks inside, or several with blanks between.
+  /// A line names one file, possibly with blanks in its name, or several files.
   void readLine(const std::string& line) {
     const fs::path whole = objFile_.parent_path() / portable(line);
     std::error_code error;
@@ -174,8 +174,8 @@ class MaterialTable {
   std::uint32_t fallback_ = 0;
 };
 
-/// Cuts polygons of more than four corners into triangles, all at once: three corners of the scan for each
-/// triangle, in the order of the polygons. tinyobjloader does it, on a text of nothing else.
+/// Cuts all polygons of more than four corners into triangles: three corners of the scan for each triangle,
+/// in polygon order. tinyobjloader does it, on a text with these polygons alone.
 std::vector<std::uint32_t> cutPolygons(const ObjScan& scan, const fs::path& path) {
   std::string text;
   std::vector<std::uint32_t> cornerOfVertex;
@@ -211,8 +211,8 @@ std::vector<std::uint32_t> cutPolygons(const ObjScan& scan, const fs::path& path
   return triangles;
 }
 
-/// Triangles, and their objects and materials. `tableOfName` leads from the names of the scan to the table of
-/// materials.
+/// Makes triangles with their objects and materials. `tableOfName` maps material names of the scan to the
+/// material table.
 void triangulate(const ObjScan& scan, const std::vector<std::uint32_t>& tableOfName,
                  std::uint32_t fallbackMaterial, ObjFile& file) {
   const std::vector<std::uint32_t> cut = cutPolygons(scan, file.path);
@@ -243,7 +243,7 @@ void triangulate(const ObjScan& scan, const std::vector<std::uint32_t>& tableOfN
   const auto positionOf = [&](std::uint32_t corner) {
     return scan.positions[static_cast<std::size_t>(scan.corners[corner].position)];
   };
-  std::size_t next = 0;  // of the cut polygons' corners
+  std::size_t next = 0;  // next corner of the cut polygons
   for (const ObjPolygon& polygon : scan.polygons) {
     const std::uint32_t first = polygon.firstCorner;
     if (polygon.corners == 3) {
@@ -288,8 +288,8 @@ int lineOfMap(const ModelMaterial& material, const std::string& statement) {
 }
 
 ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& hasher) {
-  // Measured on the well-known models: five times the text at its peak with the file's normals, fifteen where
-  // they are made.
+  // Measured on well-known models: the peak is 5 times the text with normals of the file, and 15 times with
+  // generated ones.
   constexpr std::uint64_t kMemoryPerByte = 16;
   ObjFile file;
   file.path = path;

@@ -1,4 +1,4 @@
-// An OBJ file with its MTL files, not yet changed: triangles as corners with their three indices.
+// An unprocessed OBJ file with its MTL files: triangles as corners with three indices each.
 #pragma once
 
 #include "scene/obj_model.h"

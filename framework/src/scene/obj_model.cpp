@@ -22,12 +22,12 @@ bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return glm::length(glm::cross(b - a, c - a)) > kLeastHeight * longest;
 }
 
-/// In double precision, where no float's square overflows.
+/// Normalises in double precision, where squares of floats do not overflow.
 glm::vec3 unit(const glm::vec3& v) {
   return glm::vec3(glm::normalize(glm::dvec3(v)));
 }
 
-/// Decides which triangles stay, and says what goes.
+/// Drops bad triangles and reports them.
 class Cleaner {
  public:
   Cleaner(const ObjFile& file, const ModelOptions& options) : file_(file), options_(options) {}
@@ -87,8 +87,8 @@ class Cleaner {
   std::uint32_t firstFlat_ = 0;
 };
 
-/// Numbers for different (position, texture coordinate, normal) triples of one object: an open hash table
-/// that is emptied quickly.
+/// Numbers the distinct (position, texture coordinate, normal) triples of one object: a hash table with open
+/// addressing that is cleared quickly.
 class VertexTable {
  public:
   struct Key {

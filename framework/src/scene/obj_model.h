@@ -1,4 +1,4 @@
-// A model file as the scene needs it: clean triangles with normals, grouped by object and material.
+// A processed model file: clean triangles with normals, grouped by object and material.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace lumivox {
 
-/// A material of an MTL file, not yet with its images.
+/// A material of an MTL file, with its images not yet loaded.
 struct ModelMaterial {
   Material values;                    ///< without textures
   std::string diffuseFile, maskFile;  ///< as written; empty for none
@@ -40,9 +40,10 @@ struct Model {
 };
 
 struct ModelOptions {
-  std::optional<double> crease;  ///< rad; makes all normals anew
+  std::optional<double> crease;  ///< rad; recomputes all normals
   bool strict = false;
-  bool needsMaterials = true;  ///< false: the text replaces them all, so that a missing MTL file is no matter
+  bool needsMaterials =
+      true;  ///< false: the text replaces all materials, so a missing MTL file does not matter
 };
 
 /// Reads one OBJ file, or the frames of a sequence, which must have the same faces. Everything that is read

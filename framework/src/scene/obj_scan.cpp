@@ -78,7 +78,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Without a comment behind it, and trimmed.
+/// The trimmed name, without a trailing comment.
 std::string_view nameIn(std::string_view rest) {
   for (std::size_t i = 1; i < rest.size(); ++i) {
     if (rest[i] == '#' && isBlank(rest[i - 1])) return trimmed(rest.substr(0, i));
@@ -105,7 +105,7 @@ Reading readNumber(std::string_view word, double& value) {
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
   if (result.ptr != word.data() + word.size()) return Reading::malformed;
   if (result.ec == std::errc::result_out_of_range) {
-    // Too small for a double is as good as zero; too large is not finite.
+    // An underflow counts as zero; an overflow is not finite.
     return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
                ? Reading::finite
                : Reading::nonFinite;
@@ -190,7 +190,7 @@ class ObjScanner {
     } else if (word == "mtllib") {
       result_.materialFiles.emplace_back(nameIn(rest));
     } else if (word == "g" || word == "o") {
-      // A letter alone names nothing; several groups are one object with all their names.
+      // A statement without a name names nothing. Several groups are one object with all their names.
       if (!rest.empty()) nameObject(word == "o" ? std::string(trimmed(rest)) : joinedWords(rest));
     } else if (word != "s") {
       readOther(word);
@@ -297,7 +297,7 @@ class ObjScanner {
     }
   }
 
-  /// Takes a whole number from the front; one that no file can hold becomes 0, which is no index.
+  /// Takes a whole number from the front. A number out of range becomes 0, which is no index.
   static bool readIndex(std::string_view& word, long& index) {
     const auto result = std::from_chars(word.data(), word.data() + word.size(), index);
     constexpr long kLargest = std::numeric_limits<int>::max();
@@ -321,7 +321,7 @@ class ObjScanner {
   }
 
   void readOther(std::string_view word) {
-    // Display attributes and lines: nothing that light would meet.
+    // Display attributes and lines, which have no surface.
     static const std::set<std::string_view> quiet = {"l",        "p",   "mg",         "bevel",     "c_interp",
                                                      "d_interp", "lod", "shadow_obj", "trace_obj", "vp"};
     if (quiet.count(word) > 0) return;

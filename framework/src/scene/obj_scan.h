@@ -1,6 +1,5 @@
-// The text of an OBJ file becomes numbers, and that of an MTL file is looked over before tinyobjloader parses
-// it. That library takes whatever it cannot read as zero; here every number and index is checked, so that
-// nothing is wrong in silence.
+// Reads OBJ texts, and checks MTL texts before tinyobjloader parses them. That library reads malformed
+// numbers as zero; here every number and index is checked, so that no error is silent.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@
 
 namespace lumivox {
 
-/// How often something was found, and in which line first.
+/// A count of findings and the line of the first.
 struct LineCount {
   std::size_t count = 0;
   int firstLine = 0;

@@ -8,8 +8,8 @@ namespace lumivox {
 
 std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
   constexpr double kStraight = 1e-9;  // square texels
-  // Points of an upright line must be sorted along it: a difference of rounding in x would turn two of them
-  // about, and the corner that lies between is then taken for one that goes back.
+  // Points of a vertical line must be sorted along it. Rounding in x could swap two of them, and the point
+  // between would then look like a concave corner.
   constexpr double kStep = 0x1p-30;  // texels
   for (glm::dvec2& point : points) point = kStep * glm::round(point / kStep);
   std::sort(points.begin(), points.end(), [](const glm::dvec2& a, const glm::dvec2& b) {

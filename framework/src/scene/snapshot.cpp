@@ -28,11 +28,10 @@ struct WideBounds {
   }
 };
 
-/// Four numbers that the processor takes at once (an extension of GCC and Clang).
+/// A SIMD vector of four floats (an extension of GCC and Clang).
 using Four = float __attribute__((vector_size(16)));
 
-/// Smallest and largest coordinates of so many points, each kept four times so that four points are taken at
-/// once.
+/// Smallest and largest coordinates of points, in four lanes: four points are processed at once.
 struct BlockBounds {
   std::array<float, 12> low, high;
 
@@ -70,8 +69,7 @@ struct BlockBounds {
     return std::max({high[axis], high[axis + 3], high[axis + 6], high[axis + 9]});
   }
 
-  /// Whether no point of the block can lie outside of `bounds` once it is transformed, by however it is
-  /// rounded.
+  /// Whether all transformed points of the block lie within `bounds` for certain, rounding included.
   bool within(const WideBounds& bounds, const glm::dmat4& toWorld) const {
     if (bounds.empty()) return false;
     // A point's coordinate is a sum of four products: less than eight roundings of their absolute values.
@@ -92,8 +90,8 @@ struct BlockBounds {
   }
 };
 
-/// Grows the bounds by the transformed points, every frame for what moves. Blocks of points whose own box
-/// lies inside of the bounds so far are not transformed, which leaves the result the same to the last bit.
+/// Grows the bounds by the transformed points; it runs every frame for moving objects. Blocks whose box lies
+/// inside the present bounds are skipped, which does not change a bit of the result.
 void grow(WideBounds& bounds, const glm::dmat4& toWorld, std::span<const glm::vec3> points) {
   constexpr std::size_t kBlock = 256;
   const auto growByBlock = [&](std::size_t first) {
@@ -102,8 +100,8 @@ void grow(WideBounds& bounds, const glm::dmat4& toWorld, std::span<const glm::ve
     for (const glm::vec3& point : block)
       bounds.grow(glm::dvec3(toWorld * glm::dvec4(glm::dvec3(point), 1.0)));
   };
-  // Some blocks from all over the object first: where vertices come in an order, each next block would lie
-  // beyond the last one.
+  // Starts with blocks from all over the object: if vertices are sorted, each block would otherwise lie
+  // beyond the last.
   for (std::size_t first = 0; first < points.size(); first += 16 * kBlock) growByBlock(first);
   for (std::size_t first = 0; first < points.size(); first += kBlock) growByBlock(first);
 }
@@ -125,7 +123,7 @@ WideBounds placedBounds(const Scene& scene, const Object& object) {
   return bounds;
 }
 
-/// Where a vertex goes in a whole turn about a line: its circle's bounds.
+/// Grows the bounds by the circle of a vertex in a whole turn about a line.
 void growByTurn(WideBounds& bounds, const RigidMotion& motion, const glm::dvec3& point) {
   const glm::dvec3 axis = glm::normalize(motion.axis);
   const glm::dvec3 arm = point - motion.pivot;
@@ -136,8 +134,8 @@ void growByTurn(WideBounds& bounds, const RigidMotion& motion, const glm::dvec3&
   bounds.grow(centre + reach);
 }
 
-/// The grid's bounds follow travelling objects in steps of an eighth of the scene's longest side at rest, so
-/// that a grid is placed anew only now and then.
+/// Grid bounds follow travelling objects in steps of 1/8 of the scene's longest side at rest, so that grids
+/// move rarely.
 constexpr double kTravelStep = 1.0 / 8.0;
 
 Bounds gridBounds(const Scene& scene, double time, const glm::dvec3& origin) {
@@ -199,7 +197,7 @@ void deform(const VertexSequence& sequence, double time, ObjectState& state) {
     state.positions[v] = glm::mix(positions0[v], positions1[v], weight);
     const glm::vec3 normal = glm::mix(normals0[v], normals1[v], weight);
     const float length = glm::length(normal);
-    state.normals[v] = length > 1e-6f ? normal / length : normals0[v];  // opposite normals have no middle
+    state.normals[v] = length > 1e-6f ? normal / length : normals0[v];  // opposite normals have no mean
   }
 }
 
@@ -229,7 +227,7 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
     eye = glm::mix(before.eye, after.eye, weight);
     target = glm::mix(before.target, after.target, weight);
   }
-  // The text's check sees the keys, not what lies between them.
+  // The text's check covers the keys only, not the views between them.
   if (eye == target)
     throw Error(fmt::format("camera '{}': eye and target are the same point at {} s; expected two points",
                             camera.name, time));
@@ -363,8 +361,7 @@ SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& cam
 SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera, int width, int height) {
   SceneSnapshot snapshot;
   snapshot.time = time;
-  // Objects that move are part of the origin's bounds too, where they stand at the beginning: a scene may
-  // hold nothing else.
+  // A scene may have only moving objects: then their positions at rest give the origin.
   WideBounds still, all;
   for (const Object& object : scene.objects) {
     const WideBounds placed = placedBounds(scene, object);

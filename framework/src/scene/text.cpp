@@ -21,13 +21,13 @@ constexpr double kFastest = 1e6;              // m/s
 constexpr double kLargestTurn = 360.0 * 1e3;  // deg, and deg/s
 constexpr double kLargestLens = 1e6, kNearestFocus = 1e-6, kFarthestFocus = 1e9;
 constexpr double kSmallestScale = 1e-9, kLargestScale = 1e9;
-// Sums over the particles of one voxel are 64-bit integers of a particle's 2^24 units; the limit is one of
-// time and memory.
+// A limit of time and memory: sums over the particles of a voxel are 64-bit integers with 2^24 units a
+// particle.
 constexpr double kMostParticles = 1e7;
 constexpr double kShortestLife = 1e-3, kLongestLife = 1e6;
 constexpr double kLargestSeed = 4294967295.0;
 
-/// A property that is being described; each step returns it, so that a table row reads as one line.
+/// Builds the specification of a property; its methods return it, so that a row reads as one line.
 struct Row {
   PropertySpecification specification;
 
@@ -44,7 +44,7 @@ struct Row {
     return row;
   }
   Row upTo(double high) const { return between(0, high); }
-  /// Of places, directions and speeds: the same far to both sides.
+  /// The symmetric range of places, directions and speeds.
   Row within(double high) const { return between(-high, high); }
   Row required() const {
     Row row = *this;

@@ -1,4 +1,4 @@
-// Images on surfaces.
+// Reads images as surface textures.
 #pragma once
 
 #include <filesystem>

@@ -33,7 +33,7 @@ class DisjointSets {
     while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
     return item;
   }
-  /// The smaller number stands for the set.
+  /// The smaller number represents the set.
   void merge(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t rootA = find(a), rootB = find(b);
     parents_[std::max(rootA, rootB)] = std::min(rootA, rootB);
@@ -49,7 +49,7 @@ Corners cornersOf(const WeldedObject& object, std::size_t triangle) {
   return {object.corners[3 * triangle], object.corners[3 * triangle + 1], object.corners[3 * triangle + 2]};
 }
 
-/// Triangles without those that are there already the same way round.
+/// Triangles without duplicates of the same orientation.
 std::vector<std::uint32_t> distinctTriangles(const WeldedObject& object) {
   std::vector<std::pair<Corners, std::uint32_t>> turned;
   for (std::uint32_t t = 0; t < object.triangleCount(); ++t) {
@@ -74,7 +74,7 @@ WeldedObject weld(const Scene& scene, const Object& object) {
   for (const Part& part : object.parts) {
     for (std::uint32_t i = 0; i < part.indexCount; ++i) {
       if (i % 3 == 0) welded.firstIndices.push_back(part.firstIndex + i);
-      // Adding zero makes one zero of the two.
+      // Adding zero maps -0 to 0.
       const glm::vec3 place = scene.positions[scene.indices[part.firstIndex + i]] + 0.0f;
       const auto [entry, isNew] = numbers.emplace(place, static_cast<std::uint32_t>(welded.places.size()));
       if (isNew) welded.places.push_back(place);
@@ -117,8 +117,8 @@ std::vector<SurfaceComponent> surfaceComponents(const WeldedObject& object) {
     if (isNew) components.emplace_back();
     SurfaceComponent& component = components[entry->second];
     component.triangles.push_back(t);
-    // A sixth of the box product of its corners: what the triangle spans with the origin. Relative to the
-    // component's first corner, so that a far origin costs no digits.
+    // A sixth of the triple product of its corners: the signed volume that the triangle spans with the
+    // component's first corner, which is near and so costs no precision.
     const Corners corners = cornersOf(object, t);
     const glm::dvec3 origin = object.places[object.corners[3 * component.triangles.front()]];
     component.volume += glm::dot(glm::dvec3(object.places[corners[0]]) - origin,

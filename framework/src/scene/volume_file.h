@@ -19,8 +19,7 @@ namespace lumivox {
 /// all), a perspective transform, or one that does not fit.
 DensityVolume readVolumeFile(const std::filesystem::path& file, const std::string& grid, Hasher& hasher);
 
-/// Name and type of the function in the library: it is given the bytes of the file, and its name for
-/// messages.
+/// Name and type of the library's function. It takes the bytes of the file, and the file's name for messages.
 inline constexpr const char* kVolumeReaderSymbol = "lumivoxReadVolume";
 using VolumeReader = void(std::string_view bytes, const char* file, const char* grid, DensityVolume& volume);
 
