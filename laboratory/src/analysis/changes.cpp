@@ -53,7 +53,7 @@ class Comparison {
       result.incomparable.push_back(point_ + ": times of different devices, drivers or hosts");
       return;
     }
-    if (a.width != b.width || a.height != b.height) return;  // told with the errors
+    if (a.width != b.width || a.height != b.height) return;  // reported with the errors
     addTime("frame ms", before.point.frameMs, after.point.frameMs, floor_.frame);
     addTime("next frame ms", before.point.nextFrameMs, after.point.nextFrameMs, floor_.nextFrame);
     for (const auto& [pass, time] : before.point.passDeviceMs)

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Cells of one column: the least, and those that cannot be told apart from it.
+/// Marks the least cell of a column and those within uncertainty of it.
 void markBest(std::vector<ComparedPipeline>& pipelines, std::size_t column,
               std::vector<ComparedCell> ComparedPipeline::*table, double leastShare) {
   const auto reached = [](const ComparedCell& cell) {
@@ -45,7 +45,7 @@ std::vector<TradeOff> tradeOffsOf(const std::vector<ComparedPoint>& points) {
 void fillTables(PipelineComparison& comparison, const std::vector<TradeOff>& tradeOffs) {
   for (std::size_t i = 0; i < comparison.pipelines.size(); ++i) {
     ComparedPipeline& pipeline = comparison.pipelines[i];
-    std::vector<TradeOff> own(tradeOffs.size());  // points of others stay at 0 and are passed over
+    std::vector<TradeOff> own(tradeOffs.size());  // points of others stay 0 and are skipped
     for (std::size_t point = 0; point < tradeOffs.size(); ++point)
       if (comparison.points[point].pipeline == i) own[point] = tradeOffs[point];
     pipeline.front = frontByValue(own);
@@ -60,7 +60,7 @@ void fillTables(PipelineComparison& comparison, const std::vector<TradeOff>& tra
     markBest(comparison.pipelines, column, &ComparedPipeline::atError, comparison.timeShare);
 }
 
-/// The points of the Pareto front within a frame time that give the least error, one per pipeline.
+/// Per pipeline, the point of its Pareto front with the least error within a frame time.
 std::vector<std::size_t> bestWithin(const PipelineComparison& comparison, double frameTimeMs) {
   std::vector<std::optional<std::size_t>> ofPipeline(comparison.pipelines.size());
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
@@ -113,7 +113,7 @@ std::string pipelineStem(const StoredRun& run) {
   return shortName(run.point.pipeline);
 }
 
-/// Everything that two runs must have in common to be compared in time and error.
+/// Everything that two runs must share to be compared in time and error.
 std::string groupKey(const StoredRun& run) {
   const RunIdentity& identity = run.identity;
   return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}|{}|{}|", identity.sceneHash, identity.camera, identity.time,
@@ -146,7 +146,7 @@ bool isEqualForAll(const PipelineComparison& comparison) {
   });
 }
 
-/// The better it tells pipelines apart, the more.
+/// How well the comparison separates pipelines; larger is better.
 int tellingOf(const PipelineComparison& comparison) {
   if (comparison.front.empty()) return -1;
   if (comparison.component == name(Contributes::final)) return comparison.bias ? 1 : 2;
@@ -268,7 +268,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.bias = bias;
   comparison.metric = metric;
   comparison.same = samePipelines(points);
-  std::set<std::string> references;  // each technique is judged by its own model
+  std::set<std::string> references;  // each technique is compared with the layer of its own model
   for (std::size_t source = 0; source < points.size(); ++source) {
     const ReportPoint& point = *points[source];
     const ComponentError* error = componentErrorOf(point, component, bias);

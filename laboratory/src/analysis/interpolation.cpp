@@ -8,7 +8,7 @@
 namespace lumivox {
 namespace {
 
-/// A segment of a Pareto front in logarithms, from x1 to x2; u: relative uncertainties.
+/// A segment of a Pareto front in log-log space, from x1 to x2; u: relative uncertainties.
 struct Segment {
   double x1, x2, y1, y2;
   double ux1, ux2, uy1, uy2;
@@ -31,7 +31,7 @@ Segment segmentOf(const TradeOff& a, const TradeOff& b) {
           decidable(a.timeMs, b.timeMs) && decidable(a.error, b.error)};
 }
 
-/// The part of the uncertainty that comes through the slope, no more than the segment's whole step.
+/// The uncertainty from the slope, at most the segment's whole step.
 double throughSlope(double slope, double uncertainty, double step) {
   return std::min(std::abs(slope) * uncertainty, std::abs(step));
 }
@@ -161,7 +161,7 @@ Interpolated timeAtError(const std::vector<TradeOff>& points, const std::vector<
 
 std::vector<double> roundNumbers(double low, double high) {
   constexpr std::size_t kEnough = 3;
-  constexpr double kSame = 1.005;  // a narrower range has no numbers worth to tell apart
+  constexpr double kSame = 1.005;  // values in a narrower range are not worth distinguishing
   std::vector<double> result;
   if (!(low > 0.0) || !(high >= kSame * low) || !std::isfinite(high)) return result;
   const auto scaled = [](double digits, int decade) {
@@ -177,7 +177,7 @@ std::vector<double> roundNumbers(double low, double high) {
           result.push_back(number);
     if (result.size() >= kEnough) return result;
   }
-  // Within a narrow range: the multiples of a round step.
+  // In a narrow range: multiples of a round step.
   for (int decade = decadeOf(high - low); result.size() < kEnough; --decade)
     for (const double digit : {5.0, 2.0, 1.0}) {
       if (result.size() >= kEnough) break;

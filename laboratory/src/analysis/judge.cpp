@@ -21,14 +21,14 @@ bool sameMeasure(PublishedQuantity a, PublishedQuantity b) {
   return a == b || (isTime(a) && isTime(b));
 }
 
-/// The published number as what is measured: a rate as the time of a frame.
+/// The published number in the measured quantity: a frame rate becomes a frame time.
 double comparable(const MeasuredRow& row) {
   constexpr double kMillisecondsPerSecond = 1000.0;
   return row.quantity == PublishedQuantity::frameRate ? kMillisecondsPerSecond / row.published
                                                       : row.published;
 }
 
-/// The measured value with its uncertainty. Fragments and bytes are counted, the same in every repeat.
+/// The measured value with its uncertainty. Counts of fragments and bytes are exact.
 Measured measuredValue(const MeasuredSetUp& setUp, PublishedQuantity quantity) {
   Measured value = medianOf(*setUp.measured);
   value.enoughRepeats = value.enoughRepeats || !isTime(quantity);
@@ -44,8 +44,8 @@ bool usable(const MeasuredRow& row) {
   return row.measured && row.measured->median > 0.0;
 }
 
-/// The row that a row is divided by: the one that it names, else the first comparable one of its measure,
-/// else the first that was measured at all.
+/// The divisor of a row: the one that it names, else the first comparable row of its quantity, else the first
+/// measured one.
 const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, const MeasuredRow& divided) {
   if (!divided.over.empty()) {
     for (const MeasuredRow& row : rows)
@@ -61,7 +61,7 @@ const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, const Measu
 
 JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
   JudgedRow judged{Verdict::notComparable, kNothing, kNothing, kNothing, kNothing, row.whyNot};
-  // A quotient is no more comparable than the set-up that it is divided by.
+  // A quotient is only as comparable as its divisor.
   if (judged.why.empty() && !row.over.empty() && reference != nullptr) judged.why = reference->whyNot;
   if (reference != nullptr) judged.publishedRatio = comparable(row) / comparable(*reference);
   if (!usable(row)) {
@@ -101,8 +101,8 @@ JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
   return judged;
 }
 
-/// Two comparable rows that stand in the other order than published by more than their uncertainty; empty:
-/// none. Rows that are divided by one of their own are a comparison apart.
+/// Names two comparable rows whose order differs from the published one by more than their uncertainty; empty
+/// if none. Rows with divisors of their own form separate comparisons.
 std::string brokenOrder(const std::vector<MeasuredRow>& rows) {
   for (const MeasuredRow& one : rows)
     for (const MeasuredRow& other : rows) {

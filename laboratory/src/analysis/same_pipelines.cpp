@@ -6,7 +6,7 @@
 namespace lumivox {
 namespace {
 
-/// In any order: passes that need nothing of each other run as their text has them.
+/// Sorted passes of a point: independent passes run in text order, which must not matter.
 std::vector<std::string> passesOf(const ReportPoint& point) {
   std::vector<std::string> passes = point.passOrder;
   std::sort(passes.begin(), passes.end());
@@ -33,7 +33,7 @@ struct OnePipeline {
   std::vector<const ReportPoint*> points;
 };
 
-/// Those with the fewest parameters first.
+/// Pipelines with the fewest parameters come first.
 std::vector<OnePipeline> pipelinesOf(const std::vector<const ReportPoint*>& points) {
   std::vector<OnePipeline> pipelines;
   for (const ReportPoint* point : points) {

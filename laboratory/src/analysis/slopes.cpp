@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The RMSE that the reference's noise does not explain. Its square is the difference of two squares.
+/// The RMSE without the reference's noise: the root of the difference of squares.
 Measured withoutReferenceNoise(const ComponentError& error) {
   const Measured rmse = error.error.rmse;
   const double square = rmse.value * rmse.value - error.error.noiseFloor * error.error.noiseFloor;
@@ -22,7 +22,7 @@ Measured withoutReferenceNoise(const ComponentError& error) {
   return {std::sqrt(square), rmse.value / std::sqrt(square) * rmse.uncertainty};
 }
 
-/// Points of one pipeline that differ in one parameter alone.
+/// Points of one pipeline that differ in one parameter.
 struct Series {
   std::string pipeline, parameter, others;
   std::vector<std::pair<double, const ReportPoint*>> points;
@@ -30,7 +30,8 @@ struct Series {
 
 std::vector<Series> seriesOf(const std::vector<const ReportPoint*>& points) {
   std::map<std::tuple<std::string, std::string, std::string>, Series> all;
-  std::set<std::string> progressive;  // pipelines; a point that does not say how many frames is one of one
+  std::set<std::string>
+      progressive;  // pipelines with accumulated frames; a point without a number of frames has one
   for (const ReportPoint* point : points)
     if (point->parameters.count(kAccumulatedFrames) != 0) progressive.insert(point->pipeline);
   for (const ReportPoint* point : points) {
@@ -76,7 +77,7 @@ void add(std::vector<SweepSlope>& slopes, const Series& series, const std::strin
 std::vector<SweepSlope> slopesOf(const std::vector<const ReportPoint*>& points) {
   std::vector<SweepSlope> slopes;
   for (const Series& series : seriesOf(points)) {
-    // By output and quantity, in the order in which the first point has them.
+    // By output and quantity, in the order of the first point.
     std::vector<std::pair<std::pair<std::string, std::string>, std::vector<PowerLawPoint>>> quantities;
     const auto put = [&](const std::string& output, const char* quantity, double x, const Measured& y) {
       const std::pair<std::string, std::string> key(output, quantity);

@@ -140,8 +140,8 @@ void compareValues(const ComparablePair& pair, const ImageBuffer& deviations, Im
     sums[ofRelative] += relativeMse * relativeMse;
     sums[ofSum] += sum * sum;
   });
-  // Without any difference the slope of the root is undefined; the noise floor is then how far the RMSE may
-  // be off.
+  // Without any difference the derivative of the root is undefined; the noise floor is then the uncertainty
+  // of the RMSE.
   result.rmse.uncertainty =
       result.rmse.value > 0.0 ? std::sqrt(third[ofRmse]) / (n * result.rmse.value) : result.noiseFloor;
   result.relativeMse.uncertainty = epsilon != 0.0 ? std::sqrt(third[ofRelative]) : kNan;
@@ -155,7 +155,7 @@ struct Perceived {
   double percentile95 = 0.0, ssim = 0.0, flip = 0.0, flipLdr = 0.0;
 };
 
-/// sRGB-encoded luminance in [0,1] as a display shows it: what SSIM was made for.
+/// sRGB-encoded luminance in [0,1] as a display shows it, which SSIM is defined for.
 ImageBuffer displayed(const ImageBuffer& image, float exposure) {
   ImageBuffer result = luminance(image);
   for (float& value : result.values()) value = linearToSrgb(std::clamp(value * exposure, 0.0f, 1.0f));
@@ -198,10 +198,10 @@ Perceived perceivedDifference(const ComparablePair& pair, const ImageBuffer& ref
   return result;
 }
 
-/// The reference with its noise doubled in variance: one more draw of it on top, the same in all channels of
-/// a pixel (see above).
+/// The reference with twice the noise variance: another draw of its noise is added, the same in all channels
+/// of a pixel (see above).
 ImageBuffer withNoiseDoubled(const ImageBuffer& reference, const ImageBuffer& deviations) {
-  constexpr std::uint64_t kSeed = 0x6c756d69766f78;  // any fixed number: the result must be repeatable
+  constexpr std::uint64_t kSeed = 0x6c756d69766f78;  // any fixed number, so that the result is repeatable
   ImageBuffer noisy = reference;
   const auto channels = static_cast<std::size_t>(reference.channels());
   tbb::parallel_for(std::size_t{0}, reference.pixelCount(), [&](std::size_t pixel) {
@@ -216,8 +216,8 @@ ImageBuffer withNoiseDoubled(const ImageBuffer& reference, const ImageBuffer& de
   return noisy;
 }
 
-/// The effect of the reference's noise on metrics that have no simple derivative: doubling it moves them
-/// about as far as the noise that is there already did.
+/// Estimates the effect of the reference's noise on metrics without a simple derivative: doubling the noise
+/// moves them about as far as the present noise did.
 void addPerceived(ImageError& result, const Perceived& measured, const Perceived* moved) {
   result.percentile95 = measured.percentile95;
   result.ssim = measured.ssim;
@@ -230,7 +230,7 @@ void addPerceived(ImageError& result, const Perceived& measured, const Perceived
   result.flipLdrUncertainty = std::abs(moved->flipLdr - measured.flipLdr);
 }
 
-/// Mean over the images; to the uncertainty, which is the reference's noise, their spread is added.
+/// Mean over the images. The uncertainty is that of the reference's noise plus the spread of the images.
 ImageError meanOver(const std::vector<ImageError>& each) {
   ImageError mean = each.front();
   const auto merge = [&](double& value, double& uncertainty, const auto& numberOf) {

@@ -32,9 +32,9 @@ double ExposureMeter::exposure(double white) const {
   const Pixels& pixels = lit_.luminances.empty() ? shining_ : lit_;
   std::vector<float> luminances = pixels.luminances;
   if (luminances.empty()) return 0.0;
-  // Reinhard et al. add a small constant before the logarithm, so that black does not rule. Here what is so
-  // much darker than the bright ones does not count at all: radiance has any unit, and an image that is lit
-  // in a few places has its exposure from those. A quantile, because fireflies reach any height.
+  // Reinhard et al. add a small constant before the logarithm, so that black pixels do not dominate. Here
+  // pixels darker than kBlack of the bright quantile do not count: radiance has no fixed scale, and the lit
+  // places of an image decide its exposure. A quantile, because fireflies are unbounded.
   constexpr double kBright = 0.95, kBlack = 1e-3;
   const double black = kBlack * quantileOf(luminances, kBright);
   double sum = 0.0;
@@ -46,12 +46,12 @@ double ExposureMeter::exposure(double white) const {
   }
   constexpr double kSteps = 100.0;  // per EV
   double exposure = std::log2(kKey) - sum / static_cast<double>(count);
-  // Half of the hundredth that may be white where somebody looks closer than the meter.
+  // Half of the 1 % that may be white, as a reserve for pixels that the meter does not sample.
   constexpr double kNotWhite = 0.995;
   std::vector<float> brightest = pixels.brightest;
   exposure = std::min(exposure, std::log2(white / quantileOf(brightest, kNotWhite)));
   exposure = std::round(kSteps * exposure) / kSteps;
-  return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
+  return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // maps -0 to 0
 }
 
 Display displayOf(const ImageBuffer& image, const Display& ofRadiance) {

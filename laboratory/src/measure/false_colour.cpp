@@ -1,5 +1,5 @@
-// Error maps as images: the eye reads a ramp rightly when equal steps of the value are equal steps of
-// lightness.
+// Error maps as images. Equal steps of the value are equal steps of lightness, so that the ramp reads
+// correctly.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +19,7 @@ double luminanceOf(const Rgb& rgb) {
   return kLuminanceWeights[0] * rgb[0] + kLuminanceWeights[1] * rgb[1] + kLuminanceWeights[2] * rgb[2];
 }
 
-/// The hue runs from violet through magenta and orange to pale yellow, linear R, G, B up to a factor; the
-/// ramp's own choice.
+/// The hue runs from violet through magenta and orange to pale yellow: linear R, G, B up to a factor.
 Rgb hueAt(double value) {
   struct Stop {
     double value;
@@ -43,7 +42,7 @@ Rgb hueAt(double value) {
 
 /// Each colour gets the luminance whose CIE lightness L* is proportional to the value.
 Rgb rampAt(double value) {
-  constexpr double kLightest = 97.0;  // L* of the ramp's end: just short of the page's white
+  constexpr double kLightest = 97.0;  // L* of the ramp's end, slightly darker than white paper
   const double lightness = kLightest * value;
   // CIE 15: the inverse of L* = 116 Y^(1/3) - 16 above 8, of L* = 903.3 Y below.
   const double luminance =
@@ -51,7 +50,7 @@ Rgb rampAt(double value) {
   Rgb colour = hueAt(value);
   const double factor = luminance / luminanceOf(colour);
   for (double& channel : colour) channel *= factor;
-  // Where a channel is beyond the display, mix with grey of the same luminance until it is not.
+  // If a channel exceeds the display's range, the colour is mixed with grey of the same luminance.
   const double largest = *std::max_element(colour.begin(), colour.end());
   const double mix = largest > 1.0 ? (1.0 - luminance) / (largest - luminance) : 1.0;
   for (double& channel : colour) channel = luminance + mix * (channel - luminance);

@@ -10,8 +10,8 @@
 namespace lumivox {
 namespace {
 
-/// result[x] = sum of weights[k] * sources[k][x], in the order of k. Blocks of fixed length keep their sums
-/// in registers.
+/// result[x] = sum of weights[k] * sources[k][x], in the order of k. Blocks of fixed length keep the sums in
+/// registers.
 void sumRows(std::span<const double* const> sources, std::span<const double> weights, int width,
              double* result) {
   constexpr int kBlock = 8;

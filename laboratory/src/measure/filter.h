@@ -1,5 +1,5 @@
-// Separable filters of one-channel planes in double precision. Each result depends on its own neighbourhood
-// alone, so it is the same on any number of threads.
+// Separable filters of one-channel planes in double precision. Each result depends only on its neighbourhood,
+// so it is the same for any number of threads.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct Plane {
   }
 };
 
-/// Correlates with an odd number of weights centred on each pixel. Beyond the border the nearest pixel
-/// repeats.
+/// Correlates with an odd number of weights centred on each pixel. The border pixel repeats beyond the
+/// border.
 Plane filterRows(const Plane& plane, std::span<const double> weights);
 Plane filterColumns(const Plane& plane, std::span<const double> weights);
 

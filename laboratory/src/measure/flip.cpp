@@ -29,8 +29,8 @@ constexpr double kPi = std::numbers::pi;
 
 // ---- the spaces of colour vision
 
-/// Linear Rec. 709 R, G, B to CIE XYZ: from the chromaticities of the primaries and of the white that the
-/// definition uses (D65 with five digits), scaled so that R = G = B = 1 is white of Y = 1.
+/// Linear Rec. 709 R, G, B to CIE XYZ, from the chromaticities of the primaries and of the white of FLIP's
+/// definition (D65 with five digits); R = G = B = 1 is white with Y = 1.
 struct ColourSpace {
   dmat3 xyzFromRgb, rgbFromXyz;
   dvec3 white;
@@ -60,7 +60,7 @@ dvec3 rgbFromOpponent(const dvec3& opponent) {
 
 /// CIE 1976 L*a*b*, then Hunt's adjustment (Sec. 4.1, Eq. 4): saturation shows less in the dark.
 dvec3 huntLabFromRgb(const dvec3& rgb) {
-  constexpr double kDelta = 6.0 / 29.0;  // CIE 15: where the cube root passes into its tangent
+  constexpr double kDelta = 6.0 / 29.0;  // CIE 15: where the cube root changes to its tangent
   const dvec3 relative = (kSpace.xyzFromRgb * rgb) / kSpace.white;
   const auto root = [](double t) {
     return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
@@ -88,9 +88,9 @@ constexpr Sensitivity kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYel
 struct Filters {
   std::vector<double> achromatic, redGreen, blueYellowWide,
       blueYellowNarrow;    ///< along one axis, each of sum 1
-  double wideShare = 0.0;  ///< of the wide Gaussian in blue-yellow
+  double wideShare = 0.0;  ///< weight of the wide Gaussian in blue-yellow
   std::vector<double> blur, edge,
-      point;  ///< of the features: along the other axis, and the first and second derivative
+      point;  ///< filters of the features: along the other axis, first and second derivative
 
   explicit Filters(double pixelsPerDegree) {
     // Three standard deviations of the widest Gaussian; exp(-pi^2 r^2 / b) has the deviation sqrt(b / (2
@@ -137,7 +137,7 @@ struct Filters {
 
 // ---- the two pipelines
 
-/// The data that FLIP compares, for one image.
+/// The data of one image that FLIP compares.
 struct Percept {
   std::vector<dvec3> lab;  ///< filtered by contrast sensitivity, Hunt-adjusted
   Plane edges, points;     ///< strength of the features
@@ -214,7 +214,7 @@ double flipOf(const Percept& image, const Percept& reference, std::size_t pixel)
   return std::clamp(std::pow(colour, 1.0 - feature), 0.0, 1.0);
 }
 
-/// An image as the eye perceives it on the display.
+/// The percept of an image on the display.
 template <class Tone>
 Percept perceiveWith(const ImageBuffer& source, const Filters& filters, const Tone& tone) {
   const auto channels = static_cast<std::size_t>(source.channels());
@@ -255,7 +255,7 @@ FlipMaps blankMaps(std::span<const ImageBuffer* const> images, const ImageBuffer
 
 void requireViewing(double pixelsPerDegree) {
   if (!(pixelsPerDegree > 0.0) ||
-      pixelsPerDegree > 1e4) {  // beyond, a kernel would be thousands of pixels wide
+      pixelsPerDegree > 1e4) {  // above this, kernels are thousands of pixels wide
     throw Error(fmt::format(
         "FLIP cannot be taken at {} pixels per degree; expected above 0 and at most 10000", pixelsPerDegree));
   }

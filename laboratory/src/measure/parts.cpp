@@ -1,5 +1,4 @@
-// Bias, noise and flicker, with the reference's noise taken off: estimates of mean squares that are right on
-// average.
+// Bias, noise and flicker without the reference's noise, by unbiased estimates of mean squares.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +12,14 @@
 namespace lumivox {
 namespace {
 
-/// The root of an estimated square. The uncertainty is how far the root moves when the square grows by its
-/// own: u / (2 root) where the square is well above it, and still finite at 0.
+/// The root of an estimated square. Its uncertainty is the change of the root if the square grows by its
+/// uncertainty u: u / (2 root) for squares well above u, and finite at 0.
 Measured rootOf(double square, double uncertainty) {
   const double least = std::max(square, 0.0);
   return {std::sqrt(least), std::sqrt(least + uncertainty) - std::sqrt(least)};
 }
 
-/// Values of an image that count: radiance channels, pixel by pixel.
+/// The number of radiance channels of a pixel.
 std::size_t stride(const ImageBuffer& image) {
   return static_cast<std::size_t>(image.channels());
 }
@@ -38,7 +37,7 @@ void requireShape(const ImageBuffer& one, const ImageBuffer& other, const char* 
 /// Sums over the pixels that are finite in the reference and in every image.
 struct Sums {
   double bias = 0.0, noise = 0.0, reference = 0.0;  ///< of the squares
-  double byReference = 0.0;                         ///< variance of `bias` through the reference's noise
+  double byReference = 0.0;                         ///< variance of `bias` due to the reference's noise
   std::size_t values = 0;
 };
 
@@ -54,7 +53,7 @@ Sums sumsOver(const std::vector<const ImageBuffer*>& seeds, const ImageBuffer& r
         !std::all_of(seeds.begin(), seeds.end(),
                      [&](const ImageBuffer* seed) { return finiteAt(*seed, pixel, channels); }))
       continue;
-    double deviation = 0.0;  // of the pixel's part of `bias`: the channels err together
+    double deviation = 0.0;  // deviation of the pixel's part of `bias`, with fully correlated channels
     for (std::size_t i = pixel * stride(reference);
          i < pixel * stride(reference) + static_cast<std::size_t>(channels); ++i) {
       double mean = 0.0, squares = 0.0;
@@ -118,7 +117,7 @@ ErrorParts errorParts(const std::vector<ImageBuffer>& seeds, const ImageBuffer& 
     parts.bias = rootOf(bias, byReference);
     parts.noise = {0.0, 0.0};
   } else if (all.size() == 2) {
-    // All pixels may err together: one degree of freedom, and a mean that is off by s / sqrt(2).
+    // All pixels may err together: with one degree of freedom the mean is off by s / sqrt(2).
     const double ofMean = noise / n;
     const double bySeeds = 2.0 * std::sqrt(std::max(bias, 0.0) * ofMean) + std::sqrt(2.0) * ofMean;
     parts.bias = rootOf(bias, std::hypot(byReference, bySeeds));
@@ -142,7 +141,8 @@ Measured flicker(const std::vector<ImageBuffer>& frames, const std::vector<Image
   for (std::size_t f = 1; f < frames.size(); ++f, pairs += 1.0) {
     const ImageBuffer& before = variances.empty() ? nothing : variances[f - 1];
     const ImageBuffer& after = variances.empty() ? nothing : variances[f];
-    // The change against the true change is a difference like any other: no noise but the reference's.
+    // Compares the change with the true change, like any image with its reference: only the reference has
+    // noise.
     ImageBuffer change = frames[f], trueChange = references[f], variance = after;
     requireShape(frames[f], references[f], "a frame");
     requireShape(frames[f - 1], references[f], "a frame");

@@ -57,8 +57,8 @@ std::vector<ComparablePair> comparable(std::span<const ImageBuffer> images, cons
   std::vector<ComparablePair> pairs(images.size(), blank);
   for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
     const bool goodReference = finiteAt(reference, pixel, channels);
-    // Where the pixel does not count, all have the same: the reference's value, else that of an image that
-    // has one.
+    // A pixel that does not count gets one common value: the reference's, or that of an image with a finite
+    // one.
     const float* common = goodReference ? reference.values().data() + pixel * stride : nullptr;
     bool allGood = goodReference;
     for (std::size_t i = 0; i < images.size(); ++i) {

@@ -1,4 +1,4 @@
-// Common parts of the metrics: which pixels count, and pairs of images that differ in no other pixel.
+// Common parts of the metrics: which pixels count, and pairs of images that are equal in all others.
 #pragma once
 
 #include <array>
@@ -18,38 +18,37 @@ inline constexpr std::array<double, 3> kLuminanceWeights = {0.2126, 0.7152, 0.07
 /// An unknown value.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Whether all channels of a pixel that hold radiance are finite. A pixel of which one is not counts nowhere:
-/// this is the one rule of every number that compares images.
+/// Whether all radiance channels of a pixel are finite. Other pixels do not count in any metric.
 bool finiteAt(const ImageBuffer& image, std::size_t pixel, int radianceChannels);
 
-/// An image and its reference, made comparable: radiance channels only (1 or 3), and both equal where either
-/// is NaN or infinite, so that such a pixel neither counts nor spreads into its neighbours through a filter.
+/// An image and its reference with radiance channels only (1 or 3). Where either is not finite, both are
+/// equal, so that such a pixel neither counts nor spreads through filters.
 struct ComparablePair {
   ImageBuffer image, reference;
   std::vector<unsigned char> counts;  ///< for each pixel: 1 when it is finite in both
   std::uint64_t nonFiniteImage = 0, nonFiniteReference = 0;
 };
 
-/// Error when the shapes differ or the channels are neither 1 nor 3 nor 4 (then the last is alpha and does
-/// not count).
+/// Error if the shapes differ or the number of channels is not 1, 3 or 4. The fourth is alpha and does not
+/// count.
 ComparablePair comparable(const ImageBuffer& image, const ImageBuffer& reference);
-/// The same of several images of one reference: a pixel that is not finite in one of them counts in none, so
-/// that they are judged by the same pixels of the same reference.
+/// The same for several images of one reference. A pixel that is not finite in one of them counts in none, so
+/// that all are compared by the same pixels.
 std::vector<ComparablePair> comparable(std::span<const ImageBuffer> images, const ImageBuffer& reference);
 
-/// How many channels of an image hold radiance: 1, or 3 of 3 or 4. Error naming `what` otherwise.
+/// The number of radiance channels of an image: 1, or 3 of 3 or 4. Error naming `what` otherwise.
 int radianceChannels(const ImageBuffer& image, std::string_view what);
 
 /// Luminance of one pixel.
 double luminanceAt(const ImageBuffer& image, std::size_t pixel);
 
-/// LDR-FLIP and HDR-FLIP of pairs without bad pixels; the exposures (in stops) of the latter are found from
-/// the reference.
+/// LDR-FLIP and HDR-FLIP of pairs without bad pixels. The exposures (in stops) of HDR-FLIP come from the
+/// reference.
 ImageBuffer flipLdrOf(const ImageBuffer& image, const ImageBuffer& reference, double pixelsPerDegree);
 ImageBuffer flipHdrOf(const ImageBuffer& image, const ImageBuffer& reference, double pixelsPerDegree,
                       const std::vector<double>& stops);
-/// The maps of several images of one reference, and of the first against another reference (null: none): what
-/// the eye makes of each image is found once for each exposure, which is where the time goes.
+/// FLIP maps of several images of one reference, and of the first against another reference (null: none). The
+/// percept of each image, which takes most of the time, is computed once for each exposure.
 struct FlipMaps {
   std::vector<ImageBuffer> ofImages;
   ImageBuffer againstOther;

@@ -12,13 +12,13 @@
 namespace lumivox {
 namespace {
 
-constexpr double kFlattest = 0.05, kSteepest = 8.0;  // slopes that are sought above a plateau
+constexpr double kFlattest = 0.05, kSteepest = 8.0;  // range of slopes above a plateau
 
 /// Straight line through (u, v) with weights: least squares (Press et al. 2007, Numerical Recipes,
 /// Sec. 15.2).
 struct Line {
   double slope = 0.0, offset = 0.0;
-  double slopeVariance = 0.0;  ///< for weights that are inverse variances
+  double slopeVariance = 0.0;  ///< if weights are inverse variances
   double squares = 0.0;        ///< weighted sum of the squared residuals
 };
 
@@ -44,13 +44,13 @@ Line lineThrough(const std::vector<double>& u, const std::vector<double>& v,
   return line;
 }
 
-/// The uncertainty that belongs to what `variance` says, or to the scatter where that says more.
+/// The uncertainty from `variance`, or from the scatter if that is larger.
 double uncertaintyOf(double variance, double squares, double freedom, bool weighted) {
   const double scatter = freedom > 0.0 ? squares / freedom : 0.0;
   return std::sqrt(variance * (weighted ? std::max(1.0, scatter) : scatter));
 }
 
-/// y = plateau + c x^slope with the slope given: a line in x^slope.
+/// Fits y = plateau + c x^slope for a given slope: a line in x^slope.
 struct PlateauFit {
   double slope = 0.0, plateau = 0.0, factor = 0.0, squares = std::numeric_limits<double>::infinity();
 };
@@ -73,7 +73,7 @@ PlateauFit plateauAt(double slope, const std::vector<PowerLawPoint>& points,
   return without;
 }
 
-/// The least of the squares over all slopes of one sign: a scan, then golden sections around its best.
+/// The best fit over all slopes of one sign: a scan, then golden section search around its best.
 PlateauFit bestPlateau(const std::vector<PowerLawPoint>& points, const std::vector<double>& weight,
                        double sign) {
   constexpr int kSteps = 200;
@@ -138,7 +138,7 @@ PowerLaw fitPowerLaw(std::vector<PowerLawPoint> points) {
 
   for (std::size_t i = 0; i < points.size(); ++i) weight[i] /= points[i].y.value * points[i].y.value;
   const PlateauFit fit = bestPlateau(points, weight, line.slope > 0.0 ? 1.0 : -1.0);
-  // Pressed against an end of the search, the slope says that the data do not tell one.
+  // A slope at an end of the search range means that the data determine none.
   constexpr double kNear = 1.01;
   if (std::abs(fit.slope) < kNear * kFlattest || std::abs(fit.slope) > kSteepest / kNear) return law;
   const double variance = plateauVariance(fit, points, weight);

@@ -9,7 +9,7 @@
 
 namespace lumivox {
 
-/// NaN when there are no values. Reorders them.
+/// NaN without values. Reorders the values.
 template <class Value>
 double quantileOf(std::vector<Value>& values, double quantile) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -15,7 +15,7 @@ Health scanHealth(const float* values, std::size_t count, int components, bool a
   assert(components >= 1);
   const auto stride = static_cast<std::size_t>(components);
   constexpr std::size_t kAlpha = 3;
-  // Blocks of fixed length, added in order: the sum does not depend on the number of threads.
+  // Blocks of fixed length are added in order, so that the sum does not depend on the number of threads.
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::vector<Health> blocks((count + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {

@@ -8,8 +8,8 @@ namespace {
 
 constexpr float kSolid = 0.5f;  // Material::maskTexture: below it is a hole
 
-/// Least signed distance of a point from the edges of a convex polygon, positive inside; a polygon without
-/// area is all edge.
+/// Least signed distance of a point from the edges of a convex polygon, positive inside. A polygon without
+/// area consists of its edge.
 double depthInside(const std::vector<glm::dvec2>& polygon, double doubleArea, const glm::dvec2& point) {
   const double turn = doubleArea >= 0.0 ? 1.0 : -1.0;
   double least = 1e300;
@@ -90,8 +90,8 @@ MaskedTriangle::Within MaskedTriangle::within(const glm::ivec3& voxel, double to
     most = glm::max(most, point.texel);
   }
   const glm::dvec2 image(mask_.width, mask_.height), size = most - least;
-  // More than the whole image in one voxel, or coordinates that are no numbers: undecided unless all is a
-  // hole.
+  // If a voxel covers more than the whole image, or coordinates are not finite, the result is undecided
+  // unless the mask has only holes.
   if (!(size.x < image.x && size.y < image.y)) return {false, anySolid()};
   const glm::dvec2 repeats = glm::floor(least / image) * image;
   Within result;
@@ -104,7 +104,7 @@ MaskedTriangle::Within MaskedTriangle::within(const glm::ivec3& voxel, double to
     const glm::dvec2 a = polygon[i] - polygon[0], b = polygon[(i + 1) % polygon.size()] - polygon[0];
     doubleArea += a.x * b.y - a.y * b.x;
   }
-  // Bilinear filtering reaches the texels whose centres are closer than one texel in x and in y.
+  // Bilinear filtering reads texels whose centres are closer than one texel in x and y.
   constexpr double kReach = 1.4142135623730951;
   const glm::ivec2 first(glm::floor(least - repeats - 1.5)), last(glm::ceil(most - repeats + 0.5));
   for (int y = first.y; y <= last.y && !result.solid; ++y)

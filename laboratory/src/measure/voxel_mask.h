@@ -19,7 +19,7 @@ class MaskedTriangle {
     bool solid = false;  ///< the filtered mask is at least 0.5 at some point of the surface in the voxel
     bool reachesSolid = false;  ///< a texel that filtering reaches from there is at least 0.5
   };
-  /// Of the triangle within the voxel grown by `tolerance` on every side.
+  /// The mask of the triangle within the voxel, grown by `tolerance` on every side.
   Within within(const glm::ivec3& voxel, double tolerance) const;
 
  private:

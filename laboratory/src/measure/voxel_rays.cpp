@@ -1,4 +1,5 @@
-// Straight rays through the voxels of a reference, and what closes the surfaces that they cross.
+// Traces straight rays through the voxels of a reference and finds the voxels that close the surfaces they
+// cross.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -20,15 +21,15 @@ struct Ray {
 
 using Closers = RayCrossings::Closers;
 
-/// A voxel that a ray meets: its part of the ray from `enter` to `leave`.
+/// A voxel on a ray, from `enter` to `leave`.
 struct MetVoxel {
   double enter, leave;
   std::uint64_t bit;
   bool possible, certain;
 };
 
-/// The crossings of one ray: its runs of consecutive possible voxels with a certain one among them, and of
-/// each run the voxels no farther from it than kHoleReach.
+/// Adds the crossings of one ray: runs of consecutive possible voxels that include a certain one, each with
+/// the voxels within kHoleReach of it.
 void addCrossings(const std::vector<MetVoxel>& met, Closers& closers) {
   std::size_t near = 0;
   for (std::size_t first = 0; first < met.size();) {
@@ -62,8 +63,8 @@ void walk(const Ray& ray, const VoxelReference& reference, std::vector<MetVoxel>
   addCrossings(met, closers);
 }
 
-/// Evenly over the lines that meet the grid's bounding sphere: directions over the sphere, places over the
-/// disc across them, from outside of the sphere on.
+/// Rays evenly distributed over the lines through the grid's bounding sphere: directions over the sphere,
+/// places over the perpendicular disc. They start outside of the sphere.
 Ray obliqueRay(int index, const glm::ivec3& resolution) {
   const auto [u, v, s, t] = r4Point(index);
   const double cosine = 1.0 - 2.0 * u, sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)),

@@ -1,4 +1,4 @@
-// Which voxels triangles touch, exactly.
+// Finds exactly which voxels triangles touch.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -17,7 +17,7 @@ TriangleBoxTest::TriangleBoxTest(const ExactTriangle& triangle)
   const std::array<glm::dvec3, 3> edges{triangle[1] - triangle[0], triangle[2] - triangle[1],
                                         triangle[0] - triangle[2]};
   std::size_t next = 0;
-  // Axes that vanish, as those of a point or a line do, separate nothing; the others still decide.
+  // Axes of length zero, as of a point or line, separate nothing; the other axes decide.
   const auto add = [&](const glm::dvec3& direction) {
     const double a = glm::dot(direction, triangle[0]), b = glm::dot(direction, triangle[1]),
                  c = glm::dot(direction, triangle[2]);
@@ -45,7 +45,7 @@ bool TriangleBoxTest::overlaps(const glm::dvec3& boxCentre, const glm::dvec3& bo
 
 namespace {
 
-/// Of a triangle in one voxel: how much of its surface is there.
+/// Whether a triangle has surface in a voxel.
 enum class Solid { no, perhaps, yes };
 using SolidIn = std::function<Solid(const glm::ivec3& voxel)>;
 
@@ -54,7 +54,7 @@ class Marker {
  public:
   Marker(VoxelReference& reference, double tolerance) : reference_(reference), tolerance_(tolerance) {}
 
-  /// `solid` may be empty: all of the triangle is.
+  /// `solid` may be empty: then the whole triangle is solid.
   void mark(const ExactTriangle& triangle, const SolidIn& solid) const {
     for (const glm::dvec3& corner : triangle)
       if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) return;

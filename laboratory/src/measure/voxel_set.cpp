@@ -53,8 +53,7 @@ double VoxelError::recall() const {
 
 namespace {
 
-/// Whether the voxel lies within the grid with all its neighbours, and neither it nor one of them is
-/// occupied.
+/// Whether the voxel and all its neighbours lie within the grid and are empty.
 bool isBare(const VoxelSet& occupied, const glm::ivec3& voxel) {
   if (!occupied.inside(voxel - 1) || !occupied.inside(voxel + 1)) return false;
   for (int z = -1; z <= 1; ++z)

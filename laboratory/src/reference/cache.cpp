@@ -92,7 +92,7 @@ void add(Hasher& hasher, const Medium& medium) {
   }
 }
 
-/// Of all pixels and attributes, so that damage inside an entry that still reads as an image is noticed.
+/// The hash of all pixels and attributes. It reveals damage in an entry that still reads as an image.
 ContentHash contentOf(const LayeredImage& image) {
   Hasher hasher;
   for (const auto& [name, layer] : image.layers) {
@@ -104,8 +104,8 @@ ContentHash contentOf(const LayeredImage& image) {
 
 constexpr const char* kContentHash = "content";
 
-/// The defect that keeps an entry from being the wanted reference; empty when there is none. It is not
-/// trusted: what it says of itself is compared with what it has to be.
+/// Why an entry is not the wanted reference; empty if it is. Its attributes are compared with the expected
+/// ones.
 std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOptions& resolved) {
   const auto stated = entry.attributes.find(kContentHash);
   const std::string hash = stated == entry.attributes.end() ? std::string() : stated->second;
@@ -138,7 +138,7 @@ std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOpti
   return {};
 }
 
-/// The entry, or nothing when there is none or it is not to be taken (which is said).
+/// The entry, or nothing if there is none or it has a defect, which is logged.
 std::optional<LayeredImage> readEntry(const std::filesystem::path& file, const Scene& scene,
                                       const ResolvedOptions& resolved) {
   std::error_code failure;
@@ -154,7 +154,7 @@ std::optional<LayeredImage> readEntry(const std::filesystem::path& file, const S
   return std::nullopt;
 }
 
-/// The folder may hold a link under this name, which is not followed: the entry is written in its place.
+/// Stores an entry. A link under this name is replaced, not followed.
 void keep(const std::filesystem::path& file, const LayeredImage& image) {
   std::error_code failure;
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failure)))

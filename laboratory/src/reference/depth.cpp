@@ -26,13 +26,13 @@ double axialDeviation(double depth, double angle) {
   return deviation;
 }
 
-/// In pixels of an image so wide.
+/// Standard deviation in pixels of an image of this width.
 double lateralDeviation(double angle, int width) {
   constexpr double kColumns = 640.0;  // of the sensor
   return width / kColumns * (0.8 + 0.035 * angle / (0.5 * std::numbers::pi - angle));
 }
 
-/// Disparities have steps: so have depths, wider with the square of the distance.
+/// The sensor quantises disparity, so steps of depth grow with the square of the distance.
 double quantised(double depth) {
   constexpr double kStep = 0.00285;  // 1/m, of the inverse depth
   return 1.0 / (kStep * std::max(1.0, std::round(1.0 / (kStep * depth))));

@@ -11,7 +11,8 @@ namespace lumivox {
 
 namespace {
 
-/// Points of the lens, from its middle, even by area and by angle; its middle alone for a pinhole.
+/// Points of the lens relative to its centre, evenly distributed by area and angle; the centre alone for a
+/// pinhole.
 std::vector<glm::vec3> pointsOfLens(const CameraView& camera) {
   std::vector<glm::vec3> points{glm::vec3(0.0f)};
   if (!(camera.aperture > 0.0f)) return points;
@@ -55,7 +56,7 @@ std::vector<unsigned char> emittingPixels(const Scene& scene, const SceneSnapsho
       if (traits.environment && 2 * missed >= lens.size()) emits[y * width + x] = 1;
     }
   });
-  // A lamp outshines what it shares a pixel of its silhouette with.
+  // A lamp outshines the other surfaces in a pixel of its silhouette.
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x) {
       if (lamps[y * width + x] == 0) continue;

@@ -1,4 +1,4 @@
-// One path, all components of it.
+// Traces one path and returns all of its components.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,8 +13,8 @@
 
 namespace lumivox::reference {
 
-/// Light of the last bounces that a path may have, of `bounces`: of those over a quarter up to a half of
-/// them, and of those over a half. Their ratio tells what lies beyond the last.
+/// Light of the late bounces of a path with at most `bounces`: of bounces from a quarter to a half of that
+/// number, and of later ones. Their ratio estimates the light beyond the last bounce.
 struct LateLight {
   glm::vec3 middle{0.0f}, late{0.0f};
 
@@ -37,21 +37,21 @@ struct PathSample {
   glm::vec3 full() const { return direct + indirectDiffuse + indirectGlossy; }
 };
 
-/// The same in a scene with media. What lies between the camera and the first surface is left out of the
-/// surfaces' light, and stands beside it.
+/// The same in a scene with media. The light of surfaces excludes the media between camera and first surface,
+/// which have members of their own.
 struct MediaPathSample {
   PathSample surfaces;
   glm::vec3 transmittance{1.0f};      ///< between the camera and the first surface, or the end of all media
-  glm::vec3 scatteredSingle{0.0f};    ///< light of the lights that the media scatter to the camera once
-  glm::vec3 scatteredMultiple{0.0f};  ///< all other light that comes to the camera out of the media
-  LateLight lateLight;                ///< of all of it
+  glm::vec3 scatteredSingle{0.0f};    ///< light of the lights, scattered once by media towards the camera
+  glm::vec3 scatteredMultiple{0.0f};  ///< all other light that media scatter to the camera
+  LateLight lateLight;                ///< of surfaces and media together
 
   glm::vec3 scattered() const { return scatteredSingle + scatteredMultiple; }
   glm::vec3 full() const { return transmittance * surfaces.full() + scattered(); }
 };
 
-/// The light of one path over up to N bounces, for every N that has layers of its own: radiance that is
-/// reflected by the lobes of the first surface, or scattered to the camera by media.
+/// The light of one path over up to N bounces, for each N with layers of its own: radiance reflected by the
+/// lobes of the first surface, or scattered to the camera by media.
 struct BounceSums {
   struct Sum {
     int bounces;
@@ -75,7 +75,7 @@ struct BounceSums {
   }
 };
 
-/// The way of the path tracer to the triangles; counts its rays.
+/// Traces the path tracer's rays and counts them.
 struct CountingRays {
   const RayScene& scene;
   std::uint64_t count = 0;
@@ -92,7 +92,7 @@ struct CountingRays {
 
 struct Integrator {
   static constexpr float kRouletteBelow =
-      0.5f;  ///< throughput behind the first surface below which paths are shortened
+      0.5f;  ///< throughput behind the first surface below which Russian roulette begins
 
   const RayScene& scene;
   const LightSampler& lights;
@@ -102,7 +102,7 @@ struct Integrator {
   bool roulette;
   float occlusionDistance;  ///< m; not positive: no occlusion ray
 
-  /// `sums`: also filled, where it is not null.
+  /// `sums`: filled if it is not null.
   template <class Rays>
   PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction,
                    BounceSums* sums = nullptr) const;
@@ -132,20 +132,20 @@ struct Integrator {
     return open ? 1.0f : 0.0f;
   }
 
-  /// Light that arrives where a walk began. `bounces`: how often the light was reflected or scattered on its
-  /// way there, a miss counting as a bounce; `scattered`: whether a medium did one of them.
+  /// Light that arrives at the start of a walk. `bounces`: reflections and scatterings on its way, a miss
+  /// counting as one. `scattered`: whether a medium scattered it.
   struct Arrival {
     glm::vec3 radiance;
     int bounces;
     bool scattered;
   };
-  /// The light that arrives at a point in a direction that was chosen with a density, through media. Calls
-  /// arrive(Arrival) for all of it.
+  /// Follows light that arrives at a point through media, from a direction sampled with the given density.
+  /// Calls arrive(Arrival) for each contribution.
   template <class Rays, class Arrive>
   void walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::vec3 direction, float density,
             Arrive&& arrive) const;
-  /// Light of one chosen emitter that is scattered once at a collision, against `direction`; times the weight
-  /// of the collision.
+  /// Light of one chosen emitter, scattered once at a collision against `direction`, times the weight of the
+  /// collision.
   template <class Rays>
   glm::vec3 nextScattering(Rays& rays, RandomStream& random, const Collision& collision,
                            const glm::vec3& direction) const;
@@ -155,8 +155,8 @@ struct Integrator {
   template <class Rays>
   void traceScattered(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction,
                       float reach, MediaPathSample& result, BounceSums* sums) const;
-  /// Russian roulette once little of a path's radiance is left; survivors stand for the others. False: the
-  /// path ends.
+  /// Russian roulette when the throughput is small; survivors are weighted for the others. False: the path
+  /// ends.
   bool survives(RandomStream& random, glm::vec3& throughput) const {
     const float largest = std::max({throughput.x, throughput.y, throughput.z});
     if (!(largest > 0.0f)) return false;
@@ -175,8 +175,7 @@ Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, co
   const Reflectance reflectance = reflectanceTowards(surface, light.direction);
   if (reflectance.density == 0.0f) return {};
   if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return {};
-  // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the
-  // weight one.
+  // Reflected rays meet only emissive triangles; for other lights the ratio is 0 and the weight 1.
   const float weight = powerHeuristic(reflectance.density * light.inverseDensity);
   if constexpr (ThroughMedia) {
     const glm::vec3 irradiance =
@@ -203,7 +202,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
 
   result.unoccluded = unoccludedAt(rays, random, surface);
 
-  // Throughput of the first surface's lobes, and of the path behind it; radiance that arrives at the first
+  // Throughput of the first surface's lobes and of the path behind it, and radiance that arrives at the first
   // surface over exactly one and over any number of bounces.
   glm::vec3 firstDiffuse(0.0f), firstGlossy(0.0f), throughput(1.0f);
   glm::vec3 arrivingOnce(0.0f), arriving(0.0f);
@@ -225,8 +224,8 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     } else {
       arrive(reflected, depth);
     }
-    // Behind the last surface a ray is of use only to meet emissive triangles, the other half of next-event
-    // estimation.
+    // Behind the last surface a ray can only meet emissive triangles: the other half of multiple importance
+    // sampling.
     const bool last = depth == bounces;
     if (last && !lights.hasEmitters()) break;
 

@@ -5,8 +5,8 @@
 
 namespace lumivox::reference {
 
-/// A direction by the phase function, for light that travels (or is traced) along `direction`; its density,
-/// 1/sr.
+/// Samples a direction by the phase function, for light (or a path) that travels along `direction`; `density`
+/// receives its density, 1/sr.
 inline glm::vec3 scatter(const Collision& collision, const glm::vec3& direction, RandomStream& random,
                          float& density) {
   const float cosine = samplePhaseCosine(collision.anisotropy, random.uniform());
@@ -22,7 +22,7 @@ glm::vec3 Integrator::nextScattering(Rays& rays, RandomStream& random, const Col
   const LightSample light = lights.sample(scene, collision.position, random);
   if (!light.shines) return glm::vec3(0.0f);
   if (rays.occluded(collision.position, light.shadowDirection, light.shadowReach)) return glm::vec3(0.0f);
-  // Between the way the light travels and the way to the viewer.
+  // The angle lies between the direction of the light and that to the viewer.
   const float density = phase(collision.anisotropy, glm::dot(light.direction, direction));
   const float weight = density * powerHeuristic(density * light.inverseDensity);
   return weight * light.irradiance *
@@ -38,8 +38,8 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
   Surface surface;
   Collision collision;
   for (int depth = 0;; ++depth) {
-    // Behind the last bounce a ray is of use only to meet emissive triangles, the other half of next-event
-    // estimation.
+    // Behind the last bounce a ray can only meet emissive triangles: the other half of multiple importance
+    // sampling.
     const bool last = depth == bounces;
     if (last && !lights.hasEmitters()) return;
     const bool met = rays.closestHit(origin, direction, hit);

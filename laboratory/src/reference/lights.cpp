@@ -6,15 +6,15 @@
 namespace lumivox::reference {
 namespace {
 
-/// How far a shadow ray goes towards a light without extent, as a share of the way: a surface that the light
-/// lies on does not hide it. More than the rounding of single precision.
+/// Length of a shadow ray towards a light without extent over its distance, so that a surface under the light
+/// does not hide it. The gap exceeds the rounding of single precision.
 constexpr float kReachOfPoint = 1.0f - 1e-5f;
 
 double meanOf(const glm::vec3& rgb) {
   return (std::max(0.0, double(rgb.x)) + std::max(0.0, double(rgb.y)) + std::max(0.0, double(rgb.z))) / 3.0;
 }
 
-/// Flux of a light without extent, W: how often it is worth choosing, not a radiometric result.
+/// Flux of a light without extent, W: the weight of choosing it, not a radiometric result.
 double fluxOf(const LightState& light, double sceneRadius) {
   constexpr double pi = std::numbers::pi;
   switch (light.kind) {
@@ -39,7 +39,7 @@ AliasTable::AliasTable(const std::vector<double>& weights) {
   slots_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     scaled[i] = weights[i] / sum * static_cast<double>(count);
-    slots_[i] = {0u, static_cast<std::uint32_t>(i)};  // its own alias: always taken
+    slots_[i] = {0u, static_cast<std::uint32_t>(i)};  // its own alias
     (scaled[i] < 1.0 ? small : large).push_back(static_cast<std::uint32_t>(i));
   }
   while (!small.empty() && !large.empty()) {
@@ -89,8 +89,8 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
   emitters_ = choices_.size() - firstTriangle;
   if (choices_.empty()) return;
 
-  // Half of the choices by flux, half evenly among the lights (all emissive triangles together being one): a
-  // light indoors is not starved by a sun that does not reach it.
+  // Half of the choices go by flux, half evenly among the lights (all emissive triangles count as one), so
+  // that a sun outside does not starve a lamp indoors.
   double totalFlux = 0.0;
   for (const double value : flux) totalFlux += value;
   const double share = 0.5 / static_cast<double>(firstTriangle + (emitters_ > 0 ? 1 : 0));
@@ -128,16 +128,16 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const glm::vec3&
   // Uniform over the parallelogram, its far half folded back. Turk 1990, "Generating random points in
   // triangles", method 2.
   float u = random.uniform(), v = random.uniform();
-  const auto beyond = static_cast<float>(u + v > 1.0f);  // not a branch: half of them would be mispredicted
+  const auto beyond =
+      static_cast<float>(u + v > 1.0f);  // no branch, since half of them would be mispredicted
   u += beyond * (1.0f - 2.0f * u);
   v += beyond * (1.0f - 2.0f * v);
-  // The shadow ray ends in front of the light, at the height where rays leave it.
+  // The shadow ray ends in front of the light, at the offset where rays leave it.
   const glm::vec3 end =
       triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
   const glm::vec3 path = end - position;
   const float squaredDistance = glm::dot(path, path);
-  // Density per area, seen from a distance of 1 and head on; where it vanishes the point lies on the light
-  // itself.
+  // Density per area at distance 1, seen along the normal. It is 0 where the point lies on the light itself.
   const float headOn = triangle.emitterDensity * squaredDistance;
   if (!(headOn > 1e-18f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;

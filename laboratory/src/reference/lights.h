@@ -1,4 +1,4 @@
-// Choosing a light, and a point of it, for next-event estimation.
+// Chooses a light and a point on it for next-event estimation.
 #pragma once
 
 #include <cmath>
@@ -14,14 +14,13 @@ namespace lumivox::reference {
 
 /// One light seen from a point.
 struct LightSample {
-  bool shines = false;  ///< whether the light can reach the point at all; if not, the rest is not set
-  glm::vec3 direction;  ///< unit, from the point towards the light
-  glm::vec3
-      irradiance;  ///< estimate on a plane that faces the light, divided by the probability of the choice
-  float inverseDensity =
-      0.0f;  ///< sr; of choosing this direction among all to emissive triangles; 0 for a light without extent
-  glm::vec3 shadowDirection;  ///< not unit: for the shadow ray
-  float shadowReach = 0.0f;   ///< in lengths of shadowDirection
+  bool shines = false;   ///< whether the light can reach the point; otherwise the other members are not set
+  glm::vec3 direction;   ///< unit, from the point towards the light
+  glm::vec3 irradiance;  ///< on a plane that faces the light, divided by the probability of the choice
+  float inverseDensity = 0.0f;  ///< sr; inverse density of this direction among those to emissive triangles;
+                                ///< 0 for a light without extent
+  glm::vec3 shadowDirection;    ///< not unit: for the shadow ray
+  float shadowReach = 0.0f;     ///< in lengths of shadowDirection
 
   /// The whole way to the light, m.
   float reach() const {
@@ -37,10 +36,10 @@ class LightSampler {
   bool empty() const { return choice_.empty(); }
   bool hasEmitters() const { return emitters_ > 0; }
 
-  /// A light for this point.
+  /// Chooses a light for this point.
   LightSample sample(const RayScene& scene, const glm::vec3& position, RandomStream& random) const;
 
-  /// 1/sr: density at which sample() would have picked the direction to this point of an emissive triangle.
+  /// The density, 1/sr, with which sample() picks the direction to this point of an emissive triangle.
   static float density(const TriangleRecord& triangle, float squaredDistance, float cosineAtLight) {
     return triangle.emitterDensity * squaredDistance / cosineAtLight;
   }

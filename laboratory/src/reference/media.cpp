@@ -19,14 +19,14 @@ float largestOf(const glm::vec3& rgb) {
 /// this is 3.5 % in the middle of a lone cloud, where it is worst, and far less where many overlap.
 constexpr double kCloudSpacing = 0.125;
 
-/// Below this transmittance ratio tracking ends paths by chance (Russian roulette).
+/// Ratio tracking applies Russian roulette below this transmittance.
 constexpr float kFaint = 0.05f;
 
 }  // namespace
 
 float phase(float anisotropy, float cosine) {
   const float g = anisotropy;
-  // 1 + g^2 - 2 g cos, written so that nothing cancels where light goes on nearly straight.
+  // 1 + g^2 - 2 g cos, in a form without cancellation for nearly straight directions.
   const float denominator = g >= 0.0f ? (1.0f - g) * (1.0f - g) + 2.0f * g * (1.0f - cosine)
                                       : (1.0f + g) * (1.0f + g) - 2.0f * g * (1.0f + cosine);
   return (1.0f - g) * (1.0f + g) / (4.0f * kPi * denominator * std::sqrt(denominator));
@@ -35,8 +35,7 @@ float phase(float anisotropy, float cosine) {
 float samplePhaseCosine(float anisotropy, float u) {
   const float g = anisotropy;
   const float even = 1.0f - 2.0f * u;
-  constexpr float kNearlyEven =
-      1e-3f;  // below it the inversion loses more digits than its series to first order
+  constexpr float kNearlyEven = 1e-3f;  // below it the inversion is less accurate than its first-order series
   if (std::abs(g) < kNearlyEven) return even + 1.5f * g * (1.0f - even * even);
   const float ratio = (1.0f - g * g) / (1.0f + g - 2.0f * g * u);
   return glm::clamp((1.0f + g * g - ratio * ratio) / (2.0f * g), -1.0f, 1.0f);
@@ -161,7 +160,7 @@ void Media::Flight::enterBlock() {
 }
 
 bool Media::Flight::next(RandomStream& random) {
-  float depth = -std::log(1.0f - random.uniform());  // optical, of the majorant
+  float depth = -std::log(1.0f - random.uniform());  // optical depth of the majorant
   for (;;) {
     const float within = majorant * (blockEnd_ - distance);
     if (depth < within) {
@@ -222,7 +221,8 @@ bool Media::collide(const glm::vec3& origin, const glm::vec3& direction, float r
     const glm::vec3 position = origin + nearest->distance * direction;
     const Entry& entry = *nearest->entry;
     const float share = densityAt(entry, position) / nearest->majorant;
-    const glm::vec3 real = glm::min(entry.extinction * share, 1.0f);  // of each channel's tentative ones
+    const glm::vec3 real = glm::min(entry.extinction * share,
+                                    1.0f);  // share of real collisions among tentative ones, by channel
     const float sum = throughput.x + throughput.y + throughput.z;
     if (!(sum > 0.0f)) return false;
     const float probability = glm::dot(throughput, real) / sum;

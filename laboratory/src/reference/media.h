@@ -1,4 +1,4 @@
-// Participating media as rays meet them: transmittance, and the places where light scatters.
+// Participating media for rays: transmittance, and collisions at which light scatters.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace lumivox::reference {
 
-/// Henyey & Greenstein 1941, "Diffuse radiation in the galaxy", Eq. 2: density per sr of scattering by an
-/// angle with this cosine, whose mean is g. Integrates to 1 over the sphere.
+/// The phase function of Henyey & Greenstein 1941, "Diffuse radiation in the galaxy", Eq. 2: density per sr
+/// of scattering by an angle with this cosine. g is the mean cosine. It integrates to 1 over the sphere.
 float phase(float anisotropy, float cosine);
 
-/// A cosine of the scattering angle with that density, by inverting its integral.
+/// Samples a cosine of the scattering angle with that density by inverting its integral.
 float samplePhaseCosine(float anisotropy, float u);
 
-/// Where light scatters.
+/// A point where light scatters.
 struct Collision {
   glm::vec3 position;
   float anisotropy;
@@ -29,16 +29,16 @@ class Media {
   Media(const Scene& scene, const SceneSnapshot& snapshot);
   bool empty() const { return media_.empty(); }
 
-  /// Estimate of the transmittance over `reach` metres of a unit direction: exact where media are even,
-  /// ratio tracking elsewhere (Novak, Selle & Jarosz 2014, "Residual ratio tracking for estimating
+  /// Estimates the transmittance over `reach` metres of a unit direction: exact for homogeneous media,
+  /// otherwise by ratio tracking (Novak, Selle & Jarosz 2014, "Residual ratio tracking for estimating
   /// attenuation in participating media", Sec. 3).
   glm::vec3 transmittance(const glm::vec3& origin, const glm::vec3& direction, float reach,
                           RandomStream& random) const;
 
-  /// Delta tracking (Woodcock et al. 1965): whether light that comes along the ray scatters before `reach`.
-  /// `throughput` is multiplied by the weight of what was chosen: 1, or the albedo, in grey media; where
-  /// channels differ, collisions are chosen by the history of the weights (Kutz, Habel, Li & Novak 2017,
-  /// "Spectral and decomposition tracking for rendering heterogeneous volumes", Sec. 5.1).
+  /// Delta tracking (Woodcock et al. 1965): returns whether light along the ray scatters before `reach`.
+  /// `throughput` is multiplied by the weight of the choice: 1 or the albedo in grey media. If channels
+  /// differ, collisions are chosen by the history of the weights (Kutz, Habel, Li & Novak 2017, "Spectral and
+  /// decomposition tracking for rendering heterogeneous volumes", Sec. 5.1).
   bool collide(const glm::vec3& origin, const glm::vec3& direction, float reach, RandomStream& random,
                glm::vec3& throughput, Collision& collision) const;
 
@@ -65,15 +65,15 @@ class Media {
     glm::vec3 extinction, scattering;  ///< at density 1, 1/m
     float largest;                     ///< of the channels of extinction
     float anisotropy;
-    int field;  ///< into fields_, -1 where even
+    int field;  ///< into fields_; -1 for a homogeneous medium
   };
 
-  /// Tentative collisions along a ray in one medium, with the density of its majorant.
+  /// Generates tentative collisions along a ray in one medium, with the density of its majorant.
   class Flight {
    public:
     void begin(const Media& media, const Entry& entry, const glm::vec3& origin, const glm::vec3& direction,
                float reach);
-    /// Goes on to the next one; false where the medium or the reach ends before it.
+    /// Moves to the next collision; false if the medium or the reach ends before.
     bool next(RandomStream& random);
     const Entry* entry = nullptr;
     float distance = 0.0f;  ///< m
@@ -88,10 +88,10 @@ class Media {
     glm::vec3 nextCrossing_, crossing_;
   };
 
-  /// Distances between which the ray is inside; false when it is not.
+  /// The distances between which the ray is inside the bounds; false if it misses them.
   static bool clip(const Bounds& bounds, const glm::vec3& origin, const glm::vec3& direction, float reach,
                    float& begin, float& end);
-  /// Extinction at a point over that at density 1.
+  /// Density at a point: its extinction over that at density 1.
   float densityAt(const Entry& entry, const glm::vec3& position) const {
     return entry.field < 0 ? 1.0f : fields_[static_cast<std::size_t>(entry.field)].densityAt(position);
   }

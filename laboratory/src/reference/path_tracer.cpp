@@ -88,7 +88,7 @@ Film::Film(int width, int height, bool media, const std::vector<int>& bounceLaye
 }
 
 CutOff cutOffOf(double middle, double late, double full, int bounces) {
-  constexpr int kFewestBounces = 8;  // with fewer the quarters hold no geometric series
+  constexpr int kFewestBounces = 8;  // with fewer, the quarters show no geometric series
   if (bounces < kFewestBounces || !(middle > 0.0) || !(late > 0.0) || !(full > 0.0)) return {};
   const double quarter = 0.5 * (std::sqrt(1.0 + 4.0 * late / middle) - 1.0);
   if (quarter >= 1.0) return {1.0, 1.0};
@@ -206,7 +206,7 @@ glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWo
   CountingRays rays{tracer.rays};
   glm::dvec3 sum(0.0);
   for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
-    // A stream of its own, apart from those of pixels.
+    // A random stream apart from those of pixels.
     RandomStream random(resolved.options.seed, std::numeric_limits<std::uint32_t>::max(),
                         static_cast<std::uint32_t>(sample));
     const glm::vec3 unit = direction / length;

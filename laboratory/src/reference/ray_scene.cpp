@@ -32,7 +32,7 @@ void throwOnEmbreeError(RTCDevice device, const char* step) {
   throw Error(fmt::format("reference: Embree failed to {} (error code {})", step, static_cast<int>(error)));
 }
 
-/// Which triangles of a scene can be rays' targets, and where they lie.
+/// A triangle that rays can hit: its vertices and material.
 struct CollectedTriangle {
   std::uint32_t corner[3];
   std::uint32_t material;
@@ -83,7 +83,7 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
       normals.push_back(length > 0.0f ? turned / length : glm::vec3(0.0f));
       texcoords.push_back(scene.texcoords[source]);
     }
-    // A mirroring placement turns the winding around; the front side stays with the surface.
+    // A mirroring placement reverses the winding; the front side stays the same side of the surface.
     const bool mirrored = glm::determinant(glm::mat3(state.toWorld)) < 0.0f;
     for (const Part& part : object.parts) {
       const bool cut = scene.materials[static_cast<std::size_t>(part.material)].maskTexture >= 0;
@@ -106,9 +106,10 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
     const glm::vec3 edge1 = vertices_[b] - vertices_[a], edge2 = vertices_[c] - vertices_[a];
     const glm::dvec3 cross = glm::cross(glm::dvec3(edge1), glm::dvec3(edge2));
     const double length = glm::length(cross);
-    if (!(length > 0.0)) return;  // no area: no ray can meet it
+    if (!(length > 0.0)) return;  // no area, so no ray hits it
     const glm::vec3 normal(cross / length);
-    // Vertex normals within 0.08 degrees of the geometric one (cosine 1 - 1e-6) are rounding, not curvature.
+    // Vertex normals within 0.08 degrees of the geometric one (cosine 1 - 1e-6) differ by rounding, not by
+    // curvature.
     const auto bent = [&](std::uint32_t vertex) {
       return normals[vertex] != glm::vec3(0.0f) && glm::dot(normals[vertex], normal) < 1.0f - 1e-6f;
     };
@@ -188,8 +189,8 @@ void RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& su
   const float side = -std::copysign(1.0f, glm::dot(triangle.normal, direction));
   surface.geometricNormal = side * triangle.normal;
 
-  // Points stay a hair inside their triangle, so that rounding never puts a point of an edge behind the
-  // adjoining surface: 2^-18 of the triangle's extent outweighs the rounding of its coordinates.
+  // Points stay slightly inside their triangle, so that rounding never moves a point on an edge behind the
+  // adjoining surface: 2^-18 of the triangle's extent exceeds the rounding of its coordinates.
   constexpr float kInset = 0x1.0p-18f;
   float u = std::max(hit.u, kInset), v = std::max(hit.v, kInset);
   if (u + v > 1.0f - kInset) {

@@ -1,5 +1,5 @@
-// A scene at one time as rays meet it: all triangles in world space in one Embree scene, and what shading
-// needs to know of each.
+// A scene at one time for ray tracing: all triangles in world space in one Embree scene, with their shading
+// data.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -16,7 +16,7 @@
 
 namespace lumivox::reference {
 
-/// Data of a triangle for shading: two cache lines side by side, the second only for curved or textured ones.
+/// Shading data of a triangle: two adjacent cache lines. Only curved or textured triangles use the second.
 struct alignas(64) TriangleRecord {
   glm::vec3 corner;        ///< first vertex, metres relative to the snapshot's origin
   glm::vec3 edge1, edge2;  ///< from the first to the second and third vertex
@@ -35,7 +35,7 @@ struct alignas(64) TriangleRecord {
 };
 static_assert(sizeof(TriangleRecord) == 128);
 
-/// A material as the path tracer reads it.
+/// A material for the path tracer.
 struct SurfaceMaterial {
   glm::vec3 diffuse, specular, emission;
   float exponent;
@@ -51,10 +51,10 @@ struct Hit {
   float distance;  ///< in lengths of the ray's direction
 };
 
-/// A point of a surface seen from one side. Both normals lie on the side of the viewer, so no light passes
-/// through a surface.
+/// A point of a surface seen from one side. Both normals are on the viewer's side, so no light passes through
+/// a surface.
 struct Surface {
-  glm::vec3 position;         ///< a little above the surface on the viewer's side: where rays leave from
+  glm::vec3 position;         ///< offset from the surface to the viewer's side: the origin of rays
   glm::vec3 geometricNormal;  ///< unit, on the viewer's side
   glm::vec3 normal;           ///< interpolated, unit, turned to the side of geometricNormal
   glm::vec3 diffuse;          ///< albedo; without the texture until readTexture() has been called
@@ -66,8 +66,8 @@ struct Surface {
   const Texture* texture;
   Texture::Place place;  ///< in the texture, where there is one
 
-  /// Multiplies the albedo by the texture. Apart from the rest, because texels come from far away in memory:
-  /// they travel while a shadow ray is traced.
+  /// Multiplies the albedo by the texture. Separate, because texels come from main memory: they arrive while
+  /// a shadow ray is traced.
   void readTexture() {
     if (texture != nullptr) diffuse *= texture->read(place);
   }
@@ -93,7 +93,7 @@ class RayScene {
     return true;
   }
 
-  /// Whether anything lies between the origin and `reach` lengths of the direction.
+  /// Whether a surface lies between the origin and `reach` lengths of the direction.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float reach) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -103,8 +103,8 @@ class RayScene {
     return ray.tfar < 0.0f;
   }
 
-  /// The surface at a hit, seen from a ray with this unit direction. Filled in place,
-  /// because a copy would have to wait for its many single numbers.
+  /// The surface at a hit, seen from a ray with this unit direction. Filled in place, since a copy would
+  /// stall on its many separately written members.
   void surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const;
 
   /// Emitted radiance towards a ray with this direction: from the front side only.

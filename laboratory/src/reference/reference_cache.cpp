@@ -29,7 +29,7 @@ bool isEntry(const std::string& name) {
          name.ends_with(kSuffix);
 }
 
-/// Whether this is writeFileAtomically's name for a file before it is whole.
+/// Whether this is a temporary name of writeFileAtomically.
 bool isHalfWritten(const std::string& name) {
   return name.starts_with(fmt::format(".{}", kPrefix)) && name.ends_with(".new");
 }
@@ -68,8 +68,8 @@ std::string entryName(const ContentHash& key) {
 }
 
 void markAsUsed(const fs::path& file) {
-  // Not the time of the last access, which any reader changes. Where it cannot be set the entry only looks
-  // older.
+  // Sets the time of modification, since any reader changes that of access. If it cannot be set, the entry
+  // only looks older.
   const timespec times[2] = {{0, UTIME_OMIT}, {0, UTIME_NOW}};
   utimensat(AT_FDCWD, file.c_str(), times, AT_SYMLINK_NOFOLLOW);
 }
@@ -88,7 +88,7 @@ std::vector<KeptReference> keptReferences(bool withAttributes) {
       try {
         entry.attributes = readExrAttributes(file);
       } catch (const Error&) {
-        // Damaged: listed without them, and rendered again when it is wanted.
+        // A damaged entry is listed without attributes, and rendered again when it is requested.
       }
     }
     kept.push_back(std::move(entry));
@@ -134,7 +134,7 @@ PrunedReferences pruneReferences(std::uint64_t mostBytes, std::optional<std::chr
   PrunedReferences result;
   bool full = false;
   for (const KeptReference& entry : keptReferences(/*withAttributes=*/false)) {
-    // One that is too large by itself goes alone.
+    // An entry above the limit by itself is removed alone.
     const bool tooLarge = entry.sizeBytes > mostBytes;
     full = full || (!tooLarge && result.keptBytes + entry.sizeBytes > mostBytes);
     if (!full && !tooLarge && !(unusedFor && now - entry.used > *unusedFor)) {

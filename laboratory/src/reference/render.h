@@ -1,4 +1,4 @@
-// All pixels of an image, in tiles that threads take in any order.
+// Renders all pixels of an image in tiles, which threads take in any order.
 #pragma once
 
 #include <algorithm>
@@ -21,16 +21,15 @@
 
 namespace lumivox::reference {
 
-/// Options that the image depends on, in the one form that the tracer and the cache's key share: nothing left
-/// at "the default".
+/// Options that the image depends on, with all defaults filled in. The tracer and the cache key share them.
 struct ResolvedOptions {
   ReferenceOptions options;
   SceneSnapshot snapshot;  ///< at options.time, from options.camera, at the resolution of the image
 };
-/// Throws Error on options that make no image.
+/// Throws Error for invalid options.
 ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& options);
 
-/// Everything that is built once before the first ray.
+/// Everything that is built before the first ray.
 struct Tracer {
   Tracer(const Scene& scene, const ResolvedOptions& resolved);
 
@@ -40,11 +39,11 @@ struct Tracer {
   Integrator integrator;
 };
 
-/// The radiance layers that one path says something about, in the order of kRadianceLayers.
+/// The radiance layers that one path contributes to, in this order.
 inline constexpr std::array<const char*, 7> kSurfaceLayers = {
     "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
     "full"};
-/// The same with media, where they stand behind those of the surfaces.
+/// The same with media; their layers follow those of surfaces.
 inline constexpr std::array<const char*, 11> kMediaLayers = {"direct",
                                                              "one_bounce_diffuse",
                                                              "one_bounce_glossy",
@@ -57,7 +56,7 @@ inline constexpr std::array<const char*, 11> kMediaLayers = {"direct",
                                                              "scattered_multiple",
                                                              "scattered"};
 
-/// A real surface is not the virtual scene's: its light is in the layer of all light alone.
+/// A real surface contributes to the layer "full" only.
 inline std::array<glm::vec3, kSurfaceLayers.size()> radiancesOf(const PathSample& sample) {
   if (sample.real) {
     std::array<glm::vec3, kSurfaceLayers.size()> radiances{};
@@ -98,14 +97,14 @@ inline std::array<std::string, 3> bounceLayerNames(int bounces) {
   const std::string name = "bounces_" + std::to_string(bounces);
   return {name, name + "_diffuse", name + "_glossy"};
 }
-/// `direct`: light of the path without any further bounce, in the whole image. `transmittance`: between the
-/// camera and the first surface.
+/// `direct`: light of the path without further bounces, in the whole image. `transmittance`: between camera
+/// and first surface.
 inline std::array<glm::vec3, 3> bounceRadiancesOf(const BounceSums::Sum& sum, const glm::vec3& direct,
                                                   const glm::vec3& transmittance) {
   return {direct + transmittance * (sum.diffuse + sum.glossy) + sum.scattered, sum.diffuse, sum.glossy};
 }
 
-/// Mean and variance of the mean of the layers of numbers of bounces, in one pixel.
+/// Mean and variance of the mean, in one pixel, of the layers of numbers of bounces.
 class BounceStatistics {
  public:
   explicit BounceStatistics(std::size_t limits) : sum_(9 * limits), squares_(9 * limits) {}
@@ -134,7 +133,7 @@ class BounceStatistics {
   double count_ = 0.0;
 };
 
-/// Mean and variance of the mean of the paths of one pixel: radiance layers, then the occlusion.
+/// Mean and variance of the mean over the paths of one pixel: radiance layers, then occlusion.
 template <std::size_t Layers>
 class PixelStatistics {
  public:
@@ -177,8 +176,9 @@ class PixelStatistics {
 
 /// The cost of the limit on bounces.
 struct CutOff {
-  double share = 0.0;   ///< of all light that paths of more bounces would bring, estimated; 1: without end
-  double radius = 0.0;  ///< of what is missing, the share that one further bounce leaves
+  double share =
+      0.0;  ///< estimated share of all light that paths with more bounces would bring; 1: unbounded
+  double radius = 0.0;  ///< factor by which one further bounce reduces the missing light
 };
 /// `middle` and `late` are LateLight, summed over the image like `full`. Where bounces shrink by a factor
 /// r, late / middle = x (1 + x) with x = r^(N/4), and late x^2 / (1 - x^2) lies beyond the last bounce N.
@@ -212,7 +212,7 @@ class Film {
       variances_[first + channel / 3].at(x, y, component) = pixel.varianceOfMean(channel);
     }
   }
-  /// Sums in the order of the pixels, so that threads change nothing.
+  /// Sums in pixel order, so that the result does not depend on threads.
   CutOff cutOff(int bounces) const;
   LayeredImage take();
 
@@ -328,10 +328,10 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
 /// The cut-off recorded in the attributes of a reference; none when they contain no plausible one.
 std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes);
 
-/// Says so when the limit on bounces costs more than a hundredth, by the attributes of a reference.
+/// Warns if, by the attributes of a reference, the limit on bounces costs more than 1 % of the light.
 void warnOfCutOff(const std::map<std::string, std::string>& attributes);
 
-/// Threads that a request of `threads` (0: all) gets.
+/// The number of threads for a request of `threads` (0: all).
 int threadsOf(int threads);
 
 /// Runs work(tile) for all tiles on `threads` threads (0: all).

@@ -35,7 +35,7 @@ inline glm::vec2 pointOfCircle(float u) {
   const float cosine =
       1.0f + squared * (-1.0f / 2.0f +
                         squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared * (1.0f / 40320.0f))));
-  // Which quarter it is no processor can predict: products in place of branches.
+  // The quarter is unpredictable, so products replace branches.
   const auto odd = static_cast<float>(nearest & 1), even = 1.0f - odd;
   const auto sign = static_cast<float>(1 - (nearest & 2));
   return {sign * (even * cosine - odd * sine), sign * (even * sine + odd * cosine)};

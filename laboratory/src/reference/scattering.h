@@ -29,8 +29,8 @@ inline Reflectance reflectanceTowards(const Surface& surface, const glm::vec3& d
   result.density = result.lambert;
   if (surface.glossy) {
     const float mirrorCosine = glm::dot(surface.mirror, direction);
-    // Beyond the mirror hemisphere there is no lobe and nothing is sampled. Told apart by its cosine, because
-    // at the exponent 0 the power of a cosine clamped to 0 would be 1.
+    // Beyond the mirror hemisphere the lobe is 0 and nothing is sampled. The cosine decides, because with
+    // exponent 0 the power of a cosine clamped to 0 would be 1.
     const float lobe = mirrorCosine > 0.0f ? std::pow(mirrorCosine, surface.exponent) * (0.5f / kPi) : 0.0f;
     result.glossy = ((surface.exponent + 2.0f) * lobe * cosine) * surface.specular;
     result.density = glm::mix(result.density, (surface.exponent + 1.0f) * lobe, surface.glossyProbability);
@@ -44,8 +44,8 @@ struct ReflectionSample {
   float density = 0.0f;                   ///< 1/sr; 0: the path ends
 };
 
-/// Needs the texture to have been read. A direction by the sum of both lobes' shapes, with the throughput of
-/// each.
+/// Samples a direction by the sum of both lobes, with the throughput of each. Precondition: the texture was
+/// read.
 inline ReflectionSample sampleReflection(const Surface& surface, RandomStream& random) {
   ReflectionSample result;
   if (!surface.glossy) {

@@ -1,4 +1,4 @@
-// Textures as rays read them: few bytes a texel, because rays that bounce read them all over the place.
+// Textures for rays: few bytes a texel, because bouncing rays access them incoherently.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class Texture {
   explicit Texture(const SurfaceTexture& source);
 
   using Place = BilinearPlace;
-  /// Where a bilinear lookup reads. Asks for the texels, so that they are near when read() needs them.
+  /// The texels of a bilinear lookup; prefetches them for read().
   Place find(const glm::vec2& texcoord) const {
     const Place place = bilinearPlace(texcoord, width_, height_);
     if (!packed_.empty()) {
@@ -42,7 +42,7 @@ class Texture {
   /// indices into them.
   std::array<float, 256> palette_{};
   std::vector<std::uint32_t> packed_;
-  std::vector<glm::vec3> wide_;  ///< texels of all other images; then packed_ is empty
+  std::vector<glm::vec3> wide_;  ///< texels of images with more than 256 values; packed_ is then empty
 };
 
 }  // namespace lumivox::reference

@@ -1,5 +1,5 @@
-// How much of the path tracer's time is traversal: its rays per second beside those of a bare loop over the
-// very same rays.
+// Measures the share of traversal in the path tracer's time: its rays per second beside those of a bare loop
+// over the same rays.
 #include <algorithm>
 #include <ctime>
 #include <limits>
@@ -18,7 +18,7 @@ struct RecordedRay {
   float reach;  ///< negative: a ray for the closest hit
 };
 
-/// Notes every ray, and shoots it.
+/// Records and traces every ray.
 struct RecordingRays {
   const RayScene& scene;
   std::vector<RecordedRay>& rays;
@@ -33,14 +33,14 @@ struct RecordingRays {
   }
 };
 
-/// Time that this thread has worked, s: what other programs take in between does not count.
+/// Processor time of this thread, s; other programs do not count.
 double secondsOfThread() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Shortens `best` to the time that the work takes.
+/// Lowers `best` to the time of the work, if it is shorter.
 template <class Work>
 void keepBest(double& best, Work&& work) {
   const double start = secondsOfThread();
@@ -48,7 +48,7 @@ void keepBest(double& best, Work&& work) {
   best = std::min(best, secondsOfThread() - start);
 }
 
-/// The bare loop. Returns the number of rays that met something, so that no compiler leaves the work out.
+/// The bare loop. Returns the number of hits, so that no compiler removes the work.
 std::uint64_t replay(RTCScene scene, const std::vector<RecordedRay>& rays) {
   std::uint64_t met = 0;
   RTCIntersectContext context;
@@ -89,8 +89,8 @@ TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions&
   for (const auto& tile : recorded) speed.rays += tile.size();
   if (speed.rays == 0) throw Error("reference: the image needs no rays, so there is no speed to measure");
 
-  // Both in turn on every tile, within milliseconds, and the best of each: the processor's clock and other
-  // programs then meet both alike.
+  // Measures both in turn on every tile, within milliseconds, and takes the best of each, so that the
+  // processor's clock and other programs affect both alike.
   constexpr int kRepeats = 5;
   std::vector<double> tracerSeconds(recorded.size(), std::numeric_limits<double>::max()),
       bareSeconds = tracerSeconds;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// The ray in double precision, and the nearest box so far: Embree's own ray only leads through its tree.
+/// The ray in double precision and the nearest box so far. Embree's single-precision ray only traverses its
+/// tree.
 struct BoxQuery : RTCIntersectContext {
   glm::dvec3 origin, direction;
   double reach = kInfinite;
@@ -59,7 +60,7 @@ struct VoxelBoxes::Tree {
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& self = *static_cast<const Tree*>(arguments->geometryUserPtr);
     const glm::dvec3 low = self.corner(arguments->primID), high = low + self.size;
-    // Wider than the rounding of single precision, in which Embree goes through its tree.
+    // Wider than the rounding of single precision, in which Embree traverses its tree.
     const auto wider = [&](double place) { return 1e-4 * self.size + 1e-6 * std::abs(place); };
     RTCBounds& out = *arguments->bounds_o;
     out.lower_x = static_cast<float>(low.x - wider(low.x)),
@@ -90,7 +91,7 @@ struct VoxelBoxes::Tree {
     query.enter = enter;
     query.leave = leave;
     query.box = arguments->primID;
-    // What lies behind need not be looked at, but for what rounding could have put before.
+    // Boxes behind this one are skipped, with a margin for rounding.
     auto* ray = RTCRayHitN_RayN(arguments->rayhit, arguments->N);
     RTCRayN_tfar(ray, arguments->N, 0) = std::min(
         RTCRayN_tfar(ray, arguments->N, 0), static_cast<float>(enter * (1.0 + 1e-5) + 1e-3 * self.size));
@@ -148,7 +149,7 @@ std::optional<BoxHit> VoxelBoxes::first(const glm::dvec3& origin, const glm::dve
 
 namespace {
 
-/// What one path from a start brings, and whether its first ray was open.
+/// The light of one path, and whether its first ray was open.
 struct PathResult {
   glm::dvec3 light{0.0};
   bool open = true;

@@ -14,7 +14,7 @@ namespace {
 using results::Json;
 using results::jsonOf;
 
-/// One field of a row, quoted where it needs it.
+/// A field of a row, quoted if necessary.
 std::string fieldText(const Json& value) {
   if (value.is_null()) return {};
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
@@ -28,12 +28,12 @@ std::string fieldText(const Json& value) {
   return quoted + "\"";
 }
 
-/// Rows of the fields that have columns, after the list of each record. Columns stand in the order in which
-/// they were named first, those of parameters behind them by name; a row that lacks one has an empty field.
+/// Rows of the record fields that have CSV columns. Columns are in order of first appearance, followed by
+/// parameters by name. A row without a column's value has an empty field.
 class Rows {
  public:
   void begin() { rows_.emplace_back(); }
-  /// Of a run's errors the given one, if any.
+  /// The error of the run to write, if any.
   template <class T>
   void add(const T& record, const ComponentError* error = nullptr) {
     results::fields(record, [&]<class M>(const results::Field& field, const M& member) {
@@ -51,7 +51,8 @@ class Rows {
       }
     });
   }
-  /// COLUMN, and of what has an uncertainty or quartiles COLUMN_uncertainty, COLUMN_lower_quartile, ...
+  /// Puts COLUMN and, for values with uncertainty or quartiles, COLUMN_uncertainty, COLUMN_lower_quartile,
+  /// ...
   void put(const std::string& column, const Json& value) {
     if (!value.is_object()) {
       if (std::find(columns_.begin(), columns_.end(), column) == columns_.end()) columns_.push_back(column);
@@ -67,7 +68,7 @@ class Rows {
       else if (name == "of_nothing" || name.ends_with("_quartile"))
         put(column + "_" + name, isTimed ? part : Json());
   }
-  /// Without rows the columns stay: the header of an empty table.
+  /// Removes the rows and keeps the columns as the header of an empty table.
   void clear() { rows_.clear(); }
   /// Lines end in CR LF, as RFC 4180 has it.
   std::string text() const {

@@ -12,7 +12,7 @@
 namespace lumivox::results {
 namespace {
 
-/// How long one process waits for another that is writing.
+/// Longest wait for another process that is writing.
 constexpr int kPatienceMs = 60'000;
 
 }  // namespace
@@ -64,7 +64,7 @@ bool Statement::step() {
 void Statement::run() {
   while (step()) {
   }
-  // A statement that is not reset would keep its lock on the file.
+  // An unreset statement would keep its lock on the file.
   reset();
 }
 
@@ -125,7 +125,7 @@ void Statement::bindInteger(int index, std::int64_t value) {
 }
 
 Transaction::~Transaction() {
-  // An error of the rollback itself changes nothing: SQLite rolls back when the file is opened again.
+  // An error of the rollback can be ignored: SQLite rolls back when the file is opened again.
   if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 

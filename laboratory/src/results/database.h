@@ -14,7 +14,7 @@ namespace lumivox::results {
 
 class Database;
 
-/// Bytes that are no text.
+/// Binary data.
 struct Blob {
   const std::string& bytes;
 };
@@ -31,8 +31,8 @@ class Statement {
     return *this;
   }
   void reset() { sqlite3_reset(statement_.get()); }
-  bool step();  ///< true: a row is there
-  void run();   ///< to the end
+  bool step();  ///< true if there is a row
+  void run();   ///< runs to the end
   template <class... Values>
   void run(const Values&... values) {
     bind(values...);
@@ -40,16 +40,16 @@ class Statement {
   }
 
   std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
-  /// NaN has no place in SQLite and is stored as NULL.
+  /// SQLite has no NaN; NULL stands for it.
   double number(int column) const;
   std::string text(int column) const;
   std::string bytes(int column) const;
-  /// Error for a value that is not what it should be.
+  /// Throws Error for an unexpected value.
   [[noreturn]] void fail(const std::string& why) const;
 
-  /// One value, from 1 on.
+  /// Binds one value; indices start at 1.
   void bindOne(int index, const Blob& blob);
-  /// Lists and objects as their text.
+  /// Binds lists and objects as their text.
   void bindJson(int index, const nlohmann::ordered_json& json);
   void bindOne(int index, const std::string& text);
   void bindOne(int index, const char* text) { bindOne(index, std::string(text)); }

@@ -13,7 +13,7 @@ namespace {
 
 using Expressions = std::map<std::string, std::string>;
 
-constexpr std::int64_t kLastTables = 8;  // the last schema with a table for all that a run has a list of
+constexpr std::int64_t kLastTables = 8;  // the last schema with a table for each list of a run
 constexpr std::int64_t kOldNames = 4;    // the last schema with truth, picture and ceiling
 
 /// A JSON object with the fields of a record, from columns.
@@ -42,7 +42,7 @@ std::string listOfRun(const std::string& value, const std::string& columns, cons
       columns, table);
 }
 
-/// Of each time of whole frames a column for each number; `expression` of the frame and the number.
+/// Adds a column for each number of each time of whole frames; `expression` takes the frame and the number.
 template <class Expression>
 void addTimes(Expressions& all, const Expression& expression) {
   TimingStatistics time;
@@ -107,7 +107,7 @@ Expressions runsOfTables(std::int64_t schema) {
   return all;
 }
 
-/// Of the schema that kept a run as JSON.
+/// Expressions for the schemas that stored a run as JSON.
 Expressions runsOfRecords() {
   const auto at = [](const std::string& path) { return fmt::format("json_extract(record, '$.{}')", path); };
   std::string passes = at("passes");
@@ -128,8 +128,8 @@ Expressions runsOfRecords() {
   return all;
 }
 
-/// Up to schema 3 mean and standard error over the seeds stood beside the RMSE of the first one, whose
-/// uncertainty is the reference's noise.
+/// Up to schema 3, mean and standard error over the seeds were stored beside the RMSE of the first seed,
+/// whose uncertainty is the reference's noise.
 Shown metricsOfOldNames() {
   return {
       "main.metrics m LEFT JOIN main.metrics o ON m.name = 'rmse' AND o.name = 'rmse_over_seeds' AND o.run = "
@@ -186,7 +186,7 @@ void showEarlierStore(const Database& database) {
         fmt::format("{}: it has schema {}; expected one from 1 to {}", file, schema, kSchemaVersion - 1));
   const bool isOld = schema <= kOldNames, hasTables = schema <= kLastTables;
   show(database, "runs", {"main.runs r", hasTables ? runsOfTables(schema) : runsOfRecords()});
-  // Where runs are JSON, so are their metrics.
+  // If runs are JSON, metrics are too.
   show(database, "metrics", isOld ? metricsOfOldNames() : Shown{hasTables ? "main.metrics" : "", {}});
   Expressions images, cells, rates;
   if (isOld) {

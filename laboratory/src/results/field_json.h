@@ -1,4 +1,4 @@
-// Records as JSON and back, after the lists of their fields.
+// Converts records to JSON and back by the lists of their fields.
 #pragma once
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ concept IsVector = requires(T& value) {
 template <class T>
 concept IsVec3 = std::same_as<T, glm::vec3> || std::same_as<T, glm::ivec3>;
 
-/// Null: NaN. An optional value that is absent is not written.
+/// NaN is null. Absent optional values are not written.
 template <class T>
 Json jsonOf(const T& value) {
   if constexpr (std::same_as<T, double>) {
@@ -80,13 +80,13 @@ Json jsonOf(const Passes<Point>& passes) {
   return jsonOf(passesOf(passes.point));
 }
 
-/// What the text lacks stays as it is, and what is not known here is passed over.
+/// Missing fields keep their values, and unknown ones are ignored.
 template <class T>
 void read(const Json& json, T& value) {
   if constexpr (std::same_as<T, double>) {
     value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
   } else if constexpr (std::same_as<T, bool>) {
-    value = json.is_boolean() ? json.get<bool>() : json.get<int>() != 0;  // SQLite has no other
+    value = json.is_boolean() ? json.get<bool>() : json.get<int>() != 0;  // SQLite has no Boolean type
   } else if constexpr (IsVec3<T>) {
     for (int axis = 0; axis < 3; ++axis) value[axis] = json.at(static_cast<std::size_t>(axis));
   } else if constexpr (std::same_as<T, StressOutcome>) {

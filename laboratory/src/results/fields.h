@@ -1,6 +1,6 @@
-// The fields of every record, each listed once: the store's columns, JSON, CSV, the page and the table in
-// docs/results.md come from these lists. A store that lacks the column of a new field gets it when it is
-// opened, with what a record begins with.
+// The fields of every record, each listed once. The store's columns, JSON, CSV, the page and the table in
+// docs/results.md are derived from these lists. A store without the column of a new field gets it when it is
+// opened, with the default of the record.
 #pragma once
 
 #include <concepts>
@@ -16,19 +16,19 @@ namespace lumivox::results {
 
 struct Field {
   const char* name;             ///< in JSON
-  const char* about = nullptr;  ///< with its unit; null: the sentence of the next field is about this one too
+  const char* about = nullptr;  ///< meaning and unit; null: the next field's sentence covers this one too
   const char* csv = nullptr;    ///< column in CSV; null: none
   const char* column = name;    ///< in SQL
 };
-inline constexpr const char* kCsv = "";  ///< the column in CSV is called as in JSON
+inline constexpr const char* kCsv = "";  ///< the CSV column has the JSON name
 
-/// T or const T: one list serves reading and writing.
+/// T or const T, so that one list serves reading and writing.
 template <class A, class T>
 concept Is = std::same_as<std::remove_const_t<A>, T>;
 
 // Members that are not written as their type.
 template <class T>
-struct Derived {  ///< follows from other fields: written, never read, and no column of the store
+struct Derived {  ///< derived from other fields: written, never read, and without a column in the store
   T value;
 };
 template <class Flag>
@@ -36,7 +36,7 @@ struct Against {  ///< "bias" or "misses"
   Flag& bias;
 };
 template <class Error>
-struct Metrics {  ///< by name, see metricsOf(); the store has a table of them
+struct Metrics {  ///< by name (metricsOf()); the store has a table of them
   Error& error;
 };
 template <class Point>
@@ -44,7 +44,7 @@ struct Passes {  ///< a list of PassFields
   Point& point;
 };
 
-/// Everything of a pass together. Empty: it is not known.
+/// All values of a pass. Empty: unknown.
 struct PassFields {
   std::string name;
   bool ran = true;  ///< false: its work was counted, but no times were taken yet
@@ -57,12 +57,12 @@ struct PrunedPass {
   std::string name;
   std::optional<TimingStatistics> ms, everythingMs;
 };
-/// In the order in which they ran.
+/// In the order of running.
 std::vector<PassFields> passesOf(const ReportPoint& point);
 std::vector<PrunedPass> passesOf(const PruningRecord& record);
 void addPass(ReportPoint& point, PassFields pass);
 
-/// Where something was measured.
+/// The device and host of a measurement.
 void deviceFields(auto& record, const char* csv, auto&& visit) {
   visit({"device", nullptr, csv}, record.device);
   visit({"driver", nullptr, csv}, record.driver);
@@ -214,7 +214,7 @@ void fields(Is<RayHoles> auto& holes, auto&& visit) {
         Derived{holes.obliqueShare()});
 }
 
-/// How an occupied grid compares with the exact test.
+/// Comparison of an occupied grid with the exact test.
 void judgedFields(auto& voxels, const char* csv, auto&& visit) {
   visit({"occupied", nullptr, csv}, voxels.occupied);
   visit({"reference", nullptr, csv}, voxels.reference);

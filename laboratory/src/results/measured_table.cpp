@@ -59,7 +59,7 @@ const MeasuredTable::Row* rowNamed(const MeasuredTable& table, const std::string
   return row == table.rows.end() ? nullptr : &*row;
 }
 
-/// Rows that the second table lacks.
+/// Adds rows that the second table lacks.
 void addMissing(std::vector<std::string>& found, const MeasuredTable& table, const MeasuredTable& other,
                 const std::vector<std::string>& absent, const char* what) {
   for (const MeasuredTable::Row& row : table.rows) {
@@ -138,7 +138,7 @@ std::vector<std::string> differences(const MeasuredTable& kept, const MeasuredTa
       if (column.ofTimes && kept.device != measured.device) continue;
       const double now = row.values[i], was = before->values[i];
       const double allowed = column.margin + column.share * std::abs(was);
-      // What was kept is rounded.
+      // Kept values are rounded.
       const double rounding = 0.5 * std::pow(10.0, -column.decimals);
       const bool same = std::isnan(was) ? std::isnan(now) : std::abs(now - was) <= allowed + rounding;
       if (!same)

@@ -1,4 +1,4 @@
-// The numbers of an error by name, so that the store's schema does not change with every metric.
+// Error metrics by name, so that a new metric does not change the store's schema.
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -8,8 +8,8 @@
 namespace lumivox {
 namespace {
 
-/// Visits each metric with its members: name, value, uncertainty, value of a black image. Those that it has
-/// not are constants.
+/// Visits each metric with its members: name, value, uncertainty, value of a black image. Missing members are
+/// constants.
 template <class Error, class Visit>
 void visitMetrics(Error& error, Visit visit) {
   auto& e = error.error;
@@ -35,7 +35,7 @@ void visitMetrics(Error& error, Visit visit) {
   visit("non_finite_reference", e.nonFiniteReference, zero, zero);
 }
 
-/// Such that no spread over seeds belongs to them.
+/// Whether a metric is a count, which has no spread over seeds.
 bool isCount(std::string_view metric) {
   return metric == "exposure_ev" || metric == "noise_floor" || metric.starts_with("non_finite");
 }

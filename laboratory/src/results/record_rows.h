@@ -1,5 +1,5 @@
-// Records as rows of a table, after the lists of their fields: a column for each value, and JSON in one for
-// each list and map.
+// Converts records to table rows by the lists of their fields: a column for each value, and a JSON column for
+// each list or map.
 #pragma once
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ inline constexpr bool kIsDerived = false;
 template <class T>
 inline constexpr bool kIsDerived<Derived<T>> = true;
 
-/// Calls visit(name, about, member) for each column. A time has one for each of its numbers.
+/// Calls visit(name, about, member) for each column. A time has a column for each of its numbers.
 template <class T>
 void eachColumn(T& record, auto&& visit) {
   fields(record, [&]<class M>(const Field& field, M&& member) {
@@ -44,7 +44,7 @@ const std::string& columnNames() {
   return names;
 }
 
-/// INSERT of the columns `first` and of those of a record.
+/// The INSERT statement with the columns `first` and those of a record.
 template <class T>
 std::string insertSql(const char* table, const std::string& first) {
   const std::string names = first + ", " + columnNames<T>();
@@ -54,7 +54,7 @@ std::string insertSql(const char* table, const std::string& first) {
   return fmt::format("INSERT OR IGNORE INTO {} ({}) VALUES ({})", table, names, values);
 }
 
-/// The values of the columns from `index` on.
+/// Binds the values of the columns from `index` on.
 template <class T>
 void bindRecord(Statement& statement, int index, const T& record) {
   eachColumn(record, [&]<class M>(const std::string&, const char*, const M& value) {
@@ -66,7 +66,7 @@ void bindRecord(Statement& statement, int index, const T& record) {
   });
 }
 
-/// The record in the columns of columnNames() from `column` on.
+/// Reads a record from the columns of columnNames() from `column` on.
 template <class T>
 T recordAt(const Statement& row, int column) {
   T record;
@@ -76,7 +76,8 @@ T recordAt(const Statement& row, int column) {
       if constexpr (std::same_as<M, double>) {
         value = row.number(at);
       } else if constexpr (std::same_as<M, std::uint64_t>) {
-        value = std::strtoull(row.text(at).c_str(), nullptr, 10);  // from 2^63 on it is stored below 0
+        value = std::strtoull(row.text(at).c_str(), nullptr,
+                              10);  // values from 2^63 on are stored as negative numbers
       } else if constexpr (std::integral<M>) {
         value = static_cast<M>(row.integer(at));
       } else if constexpr (std::same_as<M, std::string>) {

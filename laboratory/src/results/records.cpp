@@ -28,7 +28,7 @@ int framesOf(const ParameterValues& parameters) {
 }
 
 CostParts costParts(const ReportPoint& point) {
-  // The remainder of the longer time; a machine's mood may make it the shorter one.
+  // The remainder of the longer time, which noise may make negative.
   const auto left = [](const TimingStatistics& all, const TimingStatistics& part) {
     const Measured a = medianOf(all), b = medianOf(part);
     return Measured{std::max(0.0, a.value - b.value), std::hypot(a.uncertainty, b.uncertainty)};
@@ -77,7 +77,8 @@ std::vector<StoredRun> runsOf(const ReportRecord& report, const SceneRecord& sce
     StoredRun& run = runs.emplace_back();
     run.identity = record.identity;
     for (const auto& [name, value] : record.point.parameters)
-      run.identity.parameters.emplace(name, value.text());  // of a point that was not measured
+      run.identity.parameters.emplace(name,
+                                      value.text());  // a point that was not measured has only its parameters
     run.created = record.created;
     run.version = LUMIVOX_VERSION;
     run.sceneName = scene.name;

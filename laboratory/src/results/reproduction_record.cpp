@@ -1,4 +1,4 @@
-// Results of reproductions as a file that stays.
+// Stores results of reproductions in a file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace results {
 
 constexpr Growth kGrowths[] = {Growth::unsaid, Growth::sublinear, Growth::linear, Growth::superlinear};
 
-/// A word of its own.
+/// An enumerator as a word.
 template <class Enum>
 struct Word {
   Enum& value;
   std::span<const std::remove_const_t<Enum>> all;
 };
-/// Records, each with its verdict: for readers that do not know the rule; on reading it is judged anew.
+/// Writes records with their verdicts, for readers without the rule. Reading computes verdicts anew.
 template <class Records, class Verdicts>
 struct Judged {
   Records& records;
@@ -31,7 +31,7 @@ struct Judged {
 void setUpFields(auto& setUp, auto&& visit) {
   visit({"why_not"}, setUp.whyNot);
   visit({"failed"}, setUp.failed);
-  visit({"measured"}, setUp.measured);  // frame rates as times of frames: what is compared
+  visit({"measured"}, setUp.measured);  // frame rates are compared as frame times
 }
 
 void quantityFields(auto& record, auto&& visit) {

@@ -1,4 +1,4 @@
-// Reading the texts of published tables and figures.
+// Reads texts of published tables and figures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ constexpr const char* kReferenceLayers[] = {
     "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
     "full",   "ambient_occlusion",  "scattered_single",  "scattered"};
 
-/// Properties that a text gives for all of its rows, points and panels, and each of them for itself.
+/// Properties that a text may give for all of its rows, points and panels, or for each.
 std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
@@ -94,7 +94,7 @@ BlockSpecification setSpecification() {
   return set;
 }
 
-/// A part of a text with what it says of its set-up itself.
+/// The specification of a part, with the set-up properties that it may override.
 BlockSpecification partSpecification(const char* word, dsl::HeaderUse name, const char* meaning,
                                      std::vector<PropertySpecification> properties,
                                      std::vector<BlockSpecification> blocks = {}) {
@@ -233,7 +233,7 @@ const BlockSpecification& resultSpecification() {
   return reproductionSpecifications().front();
 }
 
-/// The set-up as known so far: the text's, a curve's over it, then the row's, point's or panel's.
+/// The accumulated set-up: the text's, overridden by a curve's, then by that of a row, point or panel.
 struct SetUp {
   const dsl::Property* scene = nullptr;
   const dsl::Property* pipeline = nullptr;
@@ -255,7 +255,7 @@ class ResultReader : TextFindings {
     const dsl::Block* main = nullptr;
     for (const dsl::Item& item : document_.items)
       if (item.block && item.block->word == "reproduction" && main == nullptr) main = item.block.get();
-    // A block that the tables refuse has no meaning to read.
+    // A block with findings is not read.
     if (main == nullptr || !findings_.empty()) return;
     const dsl::CheckedBlock block(*main, resultSpecification());
     result_.id = block.name();
@@ -317,7 +317,8 @@ class ResultReader : TextFindings {
     result_.rows.push_back(std::move(row));
   }
 
-  /// The divisor of a row is in the same text, measures the same, and is divided by nothing itself.
+  /// Checks the divisor of a row: it must be in the same text, have the same quantity, and have no divisor
+  /// itself.
   void readOver(const std::vector<const dsl::Block*>& blocks) {
     std::vector<std::string> names;
     for (const PublishedRow& row : result_.rows) names.push_back(row.name);
@@ -509,7 +510,7 @@ class ResultReader : TextFindings {
                  oneOf(names, "no pass"), nearestWord(name, names));
   }
 
-  /// Properties of the table are read for every row but reported once.
+  /// Properties of the table are read for every row but their findings are reported once.
   void reportOnce(const SourcePlace& place, int length, std::string what, std::string expected,
                   std::string suggestion = {}) {
     const bool known = std::any_of(findings_.begin(), findings_.end(), [&](const Diagnostic& other) {

@@ -18,7 +18,7 @@
 namespace lumivox {
 namespace {
 
-/// Larger over smaller, less 1; 0 where one of them is not above 0.
+/// The larger over the smaller value, minus 1; 0 if one of them is not positive.
 double apart(const Measured& a, const Measured& b) {
   if (!(a.value > 0.0) || !(b.value > 0.0)) return 0.0;
   return std::max(a.value, b.value) / std::min(a.value, b.value) - 1.0;
@@ -43,7 +43,7 @@ std::string RunIdentity::key() const {
 std::string frameworkHash() {
   static const std::string hash = [] {
     Hasher hasher;
-    // A function of each library tells where that library was loaded from.
+    // The address of a function in each library tells its file.
     for (const void* inside :
          {reinterpret_cast<const void*>(&loadScene), reinterpret_cast<const void*>(&frameworkHash)}) {
       Dl_info information{};
@@ -51,7 +51,7 @@ std::string frameworkHash() {
         throw Error("the framework's own libraries cannot be found, so results cannot be told apart");
       hasher.add(readFile(information.dli_fname, kLargestLibraryFile));
     }
-    hasher.add(readFile(frameworkPack("toolkit")));  // which techniques run as they run the library
+    hasher.add(readFile(frameworkPack("toolkit")));  // techniques depend on it as on the library
     return hasher.finish().text();
   }();
   return hash;

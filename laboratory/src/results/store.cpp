@@ -1,4 +1,5 @@
-// The results store on SQLite. One transaction per run: a process that dies leaves all of it or nothing.
+// The results store on SQLite. Each run is one transaction, so that a killed process leaves all of it or
+// nothing.
 #include "lumivox/results/store.h"
 
 #include <fmt/format.h>
@@ -47,7 +48,7 @@ bool matches(const RunFilter& filter, const StoredRun& run) {
   });
 }
 
-/// The value that a setting's text stands for.
+/// The value of a setting's text.
 ParameterValue valueOf(const std::string& text) {
   ParameterValue value;
   char* end = nullptr;
@@ -59,7 +60,7 @@ ParameterValue valueOf(const std::string& text) {
   return value;
 }
 
-/// Whole runs, one after the other.
+/// Reads complete runs one by one.
 class RunReader {
  public:
   RunReader(const results::Database& database, const std::string& where)
@@ -116,7 +117,7 @@ void ResultsStore::State::requireSchema() {
   };
   if (mode == Mode::write && isEmpty()) {
     Transaction transaction(database);
-    // Another process may have made it while this one waited.
+    // Another process may have created it meanwhile.
     if (isEmpty()) {
       database.execute(results::schemaSql());
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion));
@@ -139,7 +140,7 @@ void ResultsStore::State::requireSchema() {
   addNewFields();
 }
 
-/// An earlier version made the tables with the columns of its fields, and the views.
+/// Adds columns for fields that the version which made the store did not have, and renews the views.
 void ResultsStore::State::addNewFields() {
   std::map<std::string, std::string> present;
   Statement row(database, "SELECT name, sql FROM sqlite_schema");
@@ -181,13 +182,13 @@ bool ResultsStore::contains(const std::string& key) const {
 bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
   const std::string key = run.identity.key();
   if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(key);
-  // A run keeps its number when its times are there.
+  // A run keeps its number when its times are added.
   Statement untimed(database, "SELECT id FROM runs WHERE key = ? AND NOT complete");
   const bool known = untimed.bind(key).step();
   const std::int64_t number = known ? untimed.integer(0) : 0;
   untimed.reset();
   if (known) Statement(database, "DELETE FROM runs WHERE id = ?").run(number);
-  // A failure may have had causes that are gone; it gives way to a result.
+  // A result replaces a failure, whose cause may be gone.
   if (run.point.failure.empty() && complete)
     Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(key);
   Statement row(database, results::insertSql<StoredRun>("runs", "id, key, complete"));
@@ -250,7 +251,7 @@ std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
 
 std::vector<StoredRun> ResultsStore::State::runs(const RunFilter& filter, bool complete) const {
   std::vector<StoredRun> result;
-  // Rows that cannot match are not read.
+  // Non-matching rows are not read.
   RunReader reader(database,
                    "complete = ? AND (scene_name = ? OR instr(scene, ?)) AND (pipeline_name = ? OR "
                    "instr(pipeline, ?)) AND instr(device, ?) AND created >= ? ORDER BY id");

@@ -1,4 +1,4 @@
-// The stress battery's cells and the devices' peak rates in the results store.
+// Stores cells of the stress battery and peak rates of devices.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which process measures which point at present, and times that were measured twice.
+// Stores which process is measuring which point, and repeated measurements of times.
 #include <unistd.h>
 
 #include <algorithm>

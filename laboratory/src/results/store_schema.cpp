@@ -12,7 +12,7 @@ namespace {
 
 using Columns = std::vector<Column>;
 
-/// Of a text "name definition -- about | name definition".
+/// Parses a text "name definition -- about | name definition".
 Columns columns(std::string_view text) {
   constexpr std::string_view kNext = " | ", kAbout = " -- ";
   Columns result;
@@ -28,7 +28,7 @@ Columns columns(std::string_view text) {
   return result;
 }
 
-/// A column of a table for each of a record, by default what a record begins with.
+/// A table column for each field of a record, with the record's default.
 template <class T>
 void addColumns(Columns& columns) {
   T record;
@@ -43,7 +43,7 @@ void addColumns(Columns& columns) {
   });
 }
 
-/// A column of a view for each single value of a record, from the JSON object `json`.
+/// A view column for each single value of a record, from the JSON object `json`.
 template <class T>
 void addFields(Columns& columns, const std::string& json) {
   T record;
@@ -63,7 +63,7 @@ void addFields(Columns& columns, const std::string& json) {
   });
 }
 
-/// The columns of `text`, and those of a record in a table or in the JSON of a view.
+/// The columns of `text`, followed by those of a record in a table or in the JSON of a view.
 template <class T>
 Columns with(std::string_view text, const char* json = nullptr) {
   Columns result = columns(text);
@@ -79,13 +79,13 @@ Table records(const char* name, const char* about, const std::string& key) {
   return {name, about, with<T>("id INTEGER PRIMARY KEY | key TEXT NOT NULL UNIQUE -- " + key), "", "STRICT"};
 }
 
-/// A view of what each run has a list of.
+/// A view with a row for each item of a list of each run.
 Table ofRuns(const char* name, const char* about, Columns columns, const char* list,
              const std::string& more = {}) {
   return {name, about, std::move(columns), fmt::format("runs r, json_each(r.{}) l{}", list, more)};
 }
 
-/// The rows of view `timings`: times of whole frames are columns of runs, those of passes JSON.
+/// The rows of view `timings`: times of whole frames are columns of runs, and those of passes are JSON.
 std::string allTimings() {
   std::string sql;
   const auto add = [&](const std::string& id, const std::string& what, const std::string& pass,

@@ -1,4 +1,4 @@
-// The inside of a results store, shared by the files that read and write its tables.
+// The state of a results store, shared by the files that read and write its tables.
 #pragma once
 
 #include <string>
@@ -8,16 +8,15 @@
 
 namespace lumivox::results {
 
-/// Whether a word of a filter stands for a file: its whole path as given, or its stem.
+/// Whether a word of a filter names a file: by its path as given, or by its stem.
 bool namesFile(const std::string& wanted, const std::string& file);
 
 /// A claim of this process, from now on.
 RunClaim ownClaim();
-/// Whether the process of a claim still runs: on this machine it is looked for, of one elsewhere only the
-/// clock tells.
+/// Whether the process of a claim still runs. On other machines, only the age of the claim tells.
 bool lives(const RunClaim& claim);
 
-/// The times of a run measured once more.
+/// A repeated measurement of a run's times.
 struct Control {
   std::string created, what;  ///< "frame" or "next_frame"
   TimingStatistics time;
@@ -39,14 +38,14 @@ struct ResultsStore::State {
   // These are called inside a transaction.
   bool add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete);
   void add(const std::string& key,
-           const results::Control& control);  ///< of the run with this key, if it is here
-  /// Those that are older, or all, give way to records with the same keys. How many were put.
+           const results::Control& control);  ///< adds it to the run with this key, if the store has it
+  /// Puts records; they replace older ones, or all, with the same keys. Returns how many were put.
   template <class T>
   std::size_t put(const char* table, const std::vector<T>& records, bool olderAlone);
 
   std::optional<StoredRun> find(const std::string& key, bool complete) const;
   std::vector<StoredRun> runs(const RunFilter& filter, bool complete) const;
-  /// With the keys of their runs.
+  /// All repeated measurements with the keys of their runs.
   std::vector<std::pair<std::string, results::Control>> controls() const;
 };
 

@@ -9,7 +9,7 @@
 namespace lumivox {
 
 std::string formatMilliseconds(double milliseconds) {
-  constexpr double kWholeFrom = 99.95;  // what would round to 100 at three digits
+  constexpr double kWholeFrom = 99.95;  // rounds to 100 at three digits
   return std::abs(milliseconds) >= kWholeFrom ? fmt::format("{:.0f}", milliseconds)
                                               : fmt::format("{:.3g}", milliseconds);
 }
@@ -22,7 +22,7 @@ std::string formatQuartiles(const TimingStatistics& time) {
 
 std::string formatThousands(double value) {
   constexpr std::array<const char*, 6> kThousands{"", " k", " M", " G", " T", " P"};
-  constexpr double kNext = 999.5;  // what would round to 1000 at three digits
+  constexpr double kNext = 999.5;  // rounds to 1000 at three digits
   std::size_t power = 0;
   while (value >= kNext && power + 1 < kThousands.size()) {
     value /= 1000.0;

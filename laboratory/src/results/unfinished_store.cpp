@@ -12,12 +12,12 @@ namespace lumivox::results {
 struct UnfinishedStore::Report {
   std::int64_t id = 0;
   std::string points;
-  RunClaim claim;  ///< of the process; its command line is the report's
+  RunClaim claim;  ///< of the process; its command line identifies the report
 };
 
 UnfinishedStore::UnfinishedStore(const std::filesystem::path& file, const std::string& command)
     : command_(command) {
-  // A report that ends may remove the file after it was opened here and before this one has joined.
+  // Another report may end and remove the file after it was opened here but before this one has joined.
   do store_.emplace(file);
   while (!join());
 }
@@ -37,7 +37,7 @@ const Database& UnfinishedStore::database() const {
 
 bool UnfinishedStore::join() {
   Transaction transaction(database());
-  // Files are removed under the same lock, so that what is there now stays.
+  // Files are removed under the same lock, so this file stays.
   if (database().isMoved()) return false;
   const RunClaim own = ownClaim();
   Statement(
@@ -60,7 +60,7 @@ void UnfinishedStore::want(const std::vector<std::string>& keys) {
   Statement insert(database(), "INSERT OR IGNORE INTO wanted VALUES (?, ?)");
   for (const std::string& key : wanted_) insert.run(report_, key);
   Statement(database(), "UPDATE reports SET points = ? WHERE id = ?").run(points_, report_);
-  // The same report goes on: what an earlier run of it had measured of other versions is of no more use.
+  // The same report continues: its earlier measurements with other versions are no longer needed.
   for (const Report& other : others())
     if (!command_.empty() && other.claim.command == command_ && !lives(other.claim)) removeReport(other.id);
   transaction.commit();
@@ -90,7 +90,7 @@ std::size_t UnfinishedStore::runsOf(std::int64_t report) const {
   return static_cast<std::size_t>(row.integer(0));
 }
 
-/// With the runs that it alone wants. Inside a transaction.
+/// Removes a report with the runs that only it wants. Call it inside a transaction.
 void UnfinishedStore::removeReport(std::int64_t report) {
   Statement(database(),
             "DELETE FROM runs WHERE key IN (SELECT key FROM wanted WHERE report = ?) AND key NOT IN (SELECT "
@@ -114,7 +114,7 @@ void UnfinishedStore::leave(bool finished) {
   Transaction transaction(database());
   if (database().isMoved()) return;  // somebody removed it by hand
   if (!finished && runsOf(report_) > 0) {
-    // The process goes on, the report does not.
+    // Marks the report as ended; the process may go on.
     Statement(database(), "UPDATE reports SET process = 0, started = 0, expires = 0 WHERE id = ?")
         .run(report_);
     transaction.commit();
@@ -131,7 +131,7 @@ void UnfinishedStore::leave(bool finished) {
 }
 
 void UnfinishedStore::removeIfUnused() {
-  // Whoever opens the file meanwhile waits for this lock, sees that the file has gone and makes another.
+  // A process that opens the file meanwhile waits for this lock, finds the file removed and creates another.
   const Transaction transaction(database());
   Statement row(database(),
                 "SELECT (SELECT count(*) FROM runs) + (SELECT count(*) FROM stress_cells) + (SELECT count(*) "

@@ -1,4 +1,4 @@
-// The results store in which reports keep their points until their pages are written.
+// The results store that holds the points of reports until their pages are written.
 #pragma once
 
 #include <cstdint>
@@ -13,26 +13,26 @@ namespace lumivox::results {
 
 class Database;
 
-/// A results store beside a page, shared by the reports that write this page, at once or one after another.
-/// Each says which runs it wants. A report that ends removes those that no other wants, and the file once it
-/// is empty and no report is at work with it. What an interrupted report wants stays until a report with the
-/// same points, or with the same command, has ended.
+/// A results store beside a page, shared by all reports that write this page. Each report lists the runs that
+/// it wants. When a report ends, it removes runs that no other report wants, and removes the file if it is
+/// empty and unused. Runs of an interrupted report stay until a report with the same points or the same
+/// command has ended.
 class UnfinishedStore {
  public:
-  /// Opens or makes the file and joins those who use it.
+  /// Opens or creates the file and joins its users.
   UnfinishedStore(const std::filesystem::path& file, const std::string& command);
-  /// Without finish(): interrupted. What was measured stays.
+  /// Without finish(), the report counts as interrupted and its runs stay.
   ~UnfinishedStore();
   UnfinishedStore(const UnfinishedStore&) = delete;
   UnfinishedStore& operator=(const UnfinishedStore&) = delete;
 
   ResultsStore& store() { return *store_; }
-  /// Before the store is asked for any of these runs: from then on no other report removes them.
+  /// Call it before requesting any of these runs: from then on no other report removes them.
   void want(const std::vector<std::string>& keys);
   const std::vector<std::string>& wanted() const { return wanted_; }
-  /// Tells those on other machines that this process is at work.
+  /// Tells processes on other machines that this one is at work.
   void renew();
-  /// The page is written. What cannot be removed is a warning.
+  /// Call it when the page is written. A failed removal is a warning.
   void finish();
 
  private:

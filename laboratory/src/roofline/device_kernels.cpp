@@ -21,14 +21,15 @@ using gpu::TextureKind;
 
 constexpr std::uint32_t kInvocations = 1u << 17;  // enough for every unit of a large device
 constexpr std::uint32_t kContenders = 1u << 13;   // on one word they wait for each other
-constexpr std::uint32_t kPerRound = 8;  // samples, accesses or steps of an invocation, as in the shaders
+constexpr std::uint32_t kPerRound =
+    8;  // samples, accesses or steps of an invocation in a round, as in the shaders
 constexpr int kImageSize = 256,
-              kVolumeSize = 64;  // texels along a side: what a cache holds, as most passes' textures
+              kVolumeSize = 64;  // texels along a side; fits into a cache, as most passes' textures do
 constexpr int kTargetSize = 512;
 constexpr std::uint64_t kCachedBytes = std::uint64_t{1} << 20, kMemoryBytes = std::uint64_t{64} << 20;
 constexpr std::uint64_t kTransferBytes = std::uint64_t{8} << 20;
-constexpr std::uint32_t kCachedApart = 8256;  // elements: other cache lines, the same neighbours
-constexpr std::uint32_t kCheckedRounds = 3;   // of a run whose results are looked at
+constexpr std::uint32_t kCachedApart = 8256;  // elements: distinct cache lines with the same neighbours
+constexpr std::uint32_t kCheckedRounds = 3;   // rounds of a run whose results are checked
 
 glm::uvec3 groups(std::uint32_t invocations) {
   // local_size_x of the shaders: large, since starting a group costs time too.
@@ -49,7 +50,7 @@ gpu::BufferRef buffer(gpu::Device& device, std::uint64_t bytes) {
 // ---- sampling
 // ----------------------------------------------------------------------------------------------
 
-/// Every level holds the position of its texels, 0 to 1, which a filter that is linear gives back unchanged.
+/// Every level stores the position of its texels in 0..1, which linear filtering reproduces.
 void fillWithPositions(Texture& field) {
   const gpu::TextureDescription& d = field.description();
   for (int level = 0; level < d.levels; ++level) {
@@ -69,7 +70,7 @@ void fillWithPositions(Texture& field) {
 
 constexpr float kSampleStep = 0.25f / 9.0f;  // eight steps and less than one more stay within 0.25
 
-/// The mean position that an invocation samples in so many rounds, as in sample.comp.
+/// The mean position that an invocation samples in this many rounds, as in sample.comp.
 glm::vec3 meanPosition(std::uint32_t invocation, bool scattered, std::uint32_t width, std::uint32_t rounds) {
   glm::dvec3 start(static_cast<double>(invocation % width) / width,
                    static_cast<double>(invocation / width % width) / width,
@@ -129,14 +130,15 @@ Kernel sampleKernel(shader::ShaderLibrary& library, const SampleKind& kind, bool
     device.barrier();
     const auto sums = results->downloadValues<glm::vec4>();
     constexpr std::uint32_t kSamples = kCheckedRounds * kPerRound;
-    // Half a texel of the coarsest level for `nearest`, the steps of a byte, eight bits of a filter's
-    // weights.
+    // Half a texel of the coarsest level for `nearest`, the steps of a byte, and filter weights of eight
+    // bits.
     const float tolerance = 2.0f / static_cast<float>(size) + 1.0f / 255.0f;
     for (std::uint32_t i = 0; i < kInvocations; i += 997) {
       const glm::vec3 expected = meanPosition(i, scattered, static_cast<std::uint32_t>(size), kCheckedRounds);
       const glm::vec4 got = sums[i] / static_cast<float>(kSamples);
       if (shadow) {
-        // Lit where the position is before the stored depth: all or none where the steps stay on one side.
+        // Lit where the position is in front of the stored depth. The expected value is known if all samples
+        // are on one side.
         const bool known = !scattered && std::abs(expected.z - kShadowDepth) > 0.13f;
         if (!(got.x >= 0.0f && got.x <= 1.0f) ||
             (known && got.x != (expected.z < kShadowDepth ? 1.0f : 0.0f)))
@@ -180,7 +182,7 @@ Kernel imageKernel(shader::ShaderLibrary& library, TextureKind kind, Format form
          code::image::volume(*target), code::image::volumeWords(*target), code::image::results(*results)},
         groups(invocations));
   };
-  // The final value of a texel: the row of an image, the slice of a volume.
+  // The final value of a texel is its row in an image, or its slice in a volume.
   const auto texelsOfRow = static_cast<std::size_t>(volume ? size * size : size);
   const auto words = [=] {
     const std::vector<std::byte> bytes = target->download();
@@ -234,7 +236,7 @@ Kernel bufferKernel(shader::ShaderLibrary& library, int access, std::uint64_t by
   }
   const auto* program = &library.program(code::buffer::kProgram, Variant{.access = access}.key());
   const std::uint32_t invocations = access == Variant::accessContend ? kContenders : kInvocations;
-  // Buffers larger than the caches are read from end to end.
+  // Buffers larger than the caches are read completely.
   const std::uint32_t apart = bytes > kCachedBytes ? kInvocations : kCachedApart;
   const auto run = [=, &library](std::uint32_t rounds) {
     code::buffer::Parameters parameters{};
@@ -302,7 +304,8 @@ Kernel arithmeticKernel(shader::ShaderLibrary& library, int function, double ope
                      groups(kInvocations));
   };
   const auto wrong = [=, &device]() -> std::string {
-    constexpr std::uint32_t kRounds = 8;  // the slowest chain, of the cosine, comes closer by 0.674 a step
+    constexpr std::uint32_t kRounds =
+        8;  // the slowest chain, the cosine, converges by a factor of 0.674 a step
     run(kRounds);
     device.barrier();
     if (function == Variant::functionInteger) {
@@ -320,7 +323,7 @@ Kernel arithmeticKernel(shader::ShaderLibrary& library, int function, double ope
                          : function == Variant::functionSine      ? 0.7390851332
                          : function == Variant::functionRoot      ? 1.0
                                                                   : kAddend / (1.0 - kFactor);
-    constexpr double kTolerance = 2e-3;  // of the functions of a fast device
+    constexpr double kTolerance = 2e-3;  // error of the functions of a fast device
     for (const glm::vec4& value : results->downloadValues<glm::vec4>())
       for (int c = 0; c < 4; ++c)
         if (!(std::abs(value[c] - limit) <= kTolerance)) return fmt::format("a chain came to {}", value[c]);

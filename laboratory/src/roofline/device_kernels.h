@@ -1,5 +1,4 @@
-// The programs that `lumivox device` times. Each does one thing as often as asked, and knows what must come
-// out.
+// The programs that `lumivox device` times. Each repeats one operation and checks its result.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +12,14 @@ namespace lumivox::roofline {
 
 struct Kernel {
   double perRound = 0.0;                   ///< operations of one round
-  std::function<void(std::uint32_t)> run;  ///< so many rounds
-  std::function<std::string()> wrong;      ///< runs a few rounds; what is wrong with the result, or empty
+  std::function<void(std::uint32_t)> run;  ///< runs this many rounds
+  std::function<std::string()>
+      wrong;  ///< runs a few rounds and describes a wrong result, or returns an empty text
 };
 
 struct KernelEntry {
   std::string name, unit;
-  /// With its resources, which live as long as the kernel.
+  /// Makes the kernel with its resources, which live as long as the kernel.
   std::function<Kernel(shader::ShaderLibrary&)> make;
 };
 const std::vector<KernelEntry>& kernels();

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t kMostRounds = 1u << 24;
 
-/// Milliseconds of so many rounds, device idle before and after.
+/// Milliseconds of this many rounds; the device is idle before and after.
 double millisecondsOf(gpu::Device& device, const Kernel& kernel, std::uint32_t rounds) {
   return device
       .time([&] {
@@ -34,14 +34,14 @@ double millisecondsOf(gpu::Device& device, const Kernel& kernel, std::uint32_t r
       .deviceMs;
 }
 
-/// As many rounds as take about as long as asked.
+/// The number of rounds that take about the given time.
 std::uint32_t roundsFor(gpu::Device& device, const Kernel& kernel, double milliseconds) {
   kernel.run(1);  // the driver compiles at the first use
   std::uint32_t rounds = 1;
   for (;;) {
     const double took = millisecondsOf(device, kernel, rounds);
     if (took >= milliseconds || rounds >= kMostRounds) return rounds;
-    // Short times are mostly the cost of starting, so that they say little about longer ones.
+    // Short times are mostly start-up cost and say little about longer ones.
     const double factor = took > 0.2 * milliseconds ? milliseconds / took : 4.0;
     const double wanted = std::max(rounds + 1.0, std::ceil(rounds * factor));
     rounds = static_cast<std::uint32_t>(std::min<double>(wanted, kMostRounds));
@@ -50,7 +50,7 @@ std::uint32_t roundsFor(gpu::Device& device, const Kernel& kernel, double millis
 
 // ---- how far from the limit -----------------------------------------------------------------------------
 
-/// Resources of the device, by how the names of operations begin.
+/// Resources of the device by prefixes of operation names.
 constexpr std::array<std::pair<std::string_view, const char*>, 20> kResources{{
     {"texture_samples", "texture sampling"},
     {"image_reads", "image access"},
@@ -73,7 +73,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 20> kResources{{
     {"download_bytes", "transfers"},
     {"clear_bytes", "transfers"},
 }};
-/// Peak rates at their worst bound nothing from below.
+/// Worst-case rates give no lower bound of time.
 constexpr std::array<std::string_view, 3> kWorst{"_scattered", "_contended", "_memory"};
 
 bool isWorst(const std::string& name) {
@@ -90,8 +90,8 @@ std::set<std::string> wordsOf(const std::string& name) {
   return words;
 }
 
-/// Operations a second that `name` can reach, as the best of the repeats says: nothing makes one of them
-/// faster than the device is. 0 when nothing similar was measured.
+/// Operations a second of `name`: the best of the repeats, since noise never makes one faster than the
+/// device. 0 if nothing similar was measured.
 double peakRateOf(const std::string& name, std::string_view begin, const std::vector<PeakRate>& peakRates) {
   const std::set<std::string> words = wordsOf(name);
   double rate = 0.0;
@@ -159,7 +159,7 @@ std::vector<PeakRate> storedPeakRates(const gpu::Device& device, const std::file
                            .peakRates(identity.device, identity.driver, identity.shaderInput, identity.host);
       if (!peakRates.empty()) return peakRates;
     } catch (const Error& error) {
-      // The measurements do not need them.
+      // Measurements work without peak rates.
       logWarning("no peak rates of the device: {}", error.what());
     }
   }
