@@ -1,4 +1,4 @@
-// Time for measuring, as --budget gives it.
+// The time for measuring that --budget grants.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace lumivox::experiment {
 
-/// Counted from when it is made: after the references. What would end beyond it is not begun.
+/// Its time runs from construction, which is after the references are made. Nothing is begun that would end
+/// after it.
 class Budget {
  public:
   explicit Budget(double seconds) : seconds_(seconds) {}

@@ -13,8 +13,8 @@
 namespace lumivox::experiment {
 namespace {
 
-/// Longest side of the images on a software rasteriser, where a frame at the camera's resolution takes too
-/// long to repeat.
+/// Longest side of the images on a software rasteriser. A frame at the camera's resolution takes too long
+/// there to be repeated.
 constexpr int kSoftwarePixels = 128;
 
 std::vector<LoadedPipeline> loadAll(const std::vector<std::filesystem::path>& files,
@@ -118,7 +118,7 @@ ReferenceOptions referenceOptionsOf(const ReportOptions& options, int width, int
   ReferenceOptions reference;
   reference.samplesPerPixel =
       options.referenceSamples > 0 ? options.referenceSamples : referenceSamplesFor(width, height);
-  // The seed is the techniques' alone: all of them are judged against one reference.
+  // Only the techniques get the seed: all of them are judged against one reference.
   reference.time = options.time;
   reference.camera = options.camera;
   reference.width = width;
@@ -128,7 +128,7 @@ ReferenceOptions referenceOptionsOf(const ReportOptions& options, int width, int
 
 namespace {
 
-/// Nothing for what is usual.
+/// Empty for the usual display.
 std::string displayText(const ReportOptions& options) {
   std::string text;
   if (options.exposure) text = fmt::format("exposure {}", *options.exposure);

@@ -10,7 +10,7 @@
 namespace lumivox::experiment {
 namespace {
 
-/// Differences to the right and upwards, where there is a pixel.
+/// Differences from the pixel's right and upper neighbours, where these exist.
 double detailAt(const ImageBuffer& bright, std::size_t pixel) {
   const auto width = static_cast<std::size_t>(bright.width());
   const std::vector<float>& values = bright.values();
@@ -36,7 +36,7 @@ std::vector<std::size_t> comparedPixels(const ImageBuffer& image, bool darkest) 
   std::iota(pixels.begin(), pixels.end(), std::size_t{0});
   if (!darkest) return pixels;
   const ImageBuffer bright = luminance(image);
-  // What is no number comes last; equal ones stay in their order, so that the choice is the same everywhere.
+  // NaN sorts last and equal values keep their order, so that every machine chooses the same pixels.
   const auto brightness = [&](std::size_t pixel) {
     const float value = bright.values()[pixel];
     return std::isfinite(value) ? value : std::numeric_limits<float>::infinity();

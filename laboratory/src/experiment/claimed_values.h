@@ -1,4 +1,4 @@
-// Numbers by which claims about images are judged.
+// Quantities of images that claims are judged by.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 
 namespace lumivox::experiment {
 
-/// The numbers of all pixels of an image, row by row from 0; or of its darkest quarter, at least one.
+/// Indices of all pixels of an image, row by row from 0; or of its darkest quarter, which is at least one
+/// pixel.
 std::vector<std::size_t> comparedPixels(const ImageBuffer& image, bool darkest);
 
-/// What an image has of a quantity in these pixels. Not finite where a pixel is not; colour and detail, which
-/// are relative, neither where all is black.
+/// The value of a quantity over these pixels. It is not finite where a pixel is not; colour and detail are
+/// relative, and not finite where all pixels are black.
 double claimedValue(const ImageBuffer& image, const std::vector<std::size_t>& pixels,
                     ClaimedQuantity quantity);
 

@@ -19,7 +19,8 @@ std::optional<double> Costs::expected(const std::string& subject, const std::str
   if (known == works_.end()) return std::nullopt;
   const auto same = known->second.find(subject);
   if (same != known->second.end()) return weight * same->second.seconds / same->second.weight;
-  // Of a subject like the mean of all: those that had the work may be dearer or cheaper than others.
+  // Rate of a subject as dear as the mean of all: the subjects that had this work may be dearer or cheaper
+  // than that.
   double seconds = 0.0, weights = 0.0;
   for (const auto& [name, taken] : known->second) {
     seconds += taken.seconds / taken.parts;

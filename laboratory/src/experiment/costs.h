@@ -1,4 +1,5 @@
-// What the parts of a job took, and what follows for those that are left: the one estimate of remaining time.
+// What the finished parts of a job took, and from that the estimate of the remaining time. Every estimate is
+// made here.
 #pragma once
 
 #include <map>
@@ -8,21 +9,21 @@
 
 namespace lumivox::experiment {
 
-/// Given as the time that is left: none is told.
+/// Given as the remaining time where none is told.
 inline constexpr double kUnknownSeconds = -1.0;
 
-/// A part is some work on a subject, such as taking the times of a pipeline. Its weight is what is known of
-/// its cost in advance, such as its frames, and makes parts of one work comparable.
+/// A part is one kind of work on one subject, such as timing a pipeline. Its weight, such as a number of
+/// frames, is the cost that is known in advance; it makes parts of one kind of work comparable.
 class Costs {
  public:
-  /// Only what was done here: a part that was found done elsewhere says nothing of those that are left.
+  /// Records a part that was done here. A part found done elsewhere says nothing about those that are left.
   void add(const std::string& subject, const std::string& work, double weight, double seconds);
 
-  /// s: as the same work on the same subject took. Before there is one: as that work took on other subjects,
-  /// this one being as dear, compared with them, as in its other works. Nothing before there is such work.
+  /// Expected time, s: as the same work on the same subject took. Before there is one, the time on other
+  /// subjects, scaled by how dear this subject was in its other kinds of work. Empty before any such work.
   std::optional<double> expected(const std::string& subject, const std::string& work, double weight) const;
 
-  /// s: as the dearest of the same work on the same subject; nothing before there is one.
+  /// Longest time, s: as the dearest part of the same work on the same subject; empty before there is one.
   std::optional<double> most(const std::string& subject, const std::string& work, double weight) const;
 
  private:
@@ -32,10 +33,11 @@ class Costs {
   };
   using Subjects = std::map<std::string, Taken>;
 
-  /// Seconds of a part over its weight: of a work that of all subjects together, in which one that had more
-  /// parts than others counts no more, but a dearer one does.
+  /// Seconds per weight over all subjects of one kind of work. A subject with more parts than others counts
+  /// no more; a dearer one does.
   static double meanRate(const Subjects& subjects);
-  /// How dear a subject is, compared with all that had the same works: 1 where none of its works is known.
+  /// Cost of a subject over that of all subjects with the same kinds of work; 1 where none of its work is
+  /// known.
   double share(const std::string& subject) const;
 
   std::map<std::string, Subjects> works_;

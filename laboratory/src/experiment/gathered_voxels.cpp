@@ -21,7 +21,7 @@ bool isIndirect(Contributes component) {
          component == Contributes::ambientOcclusion;
 }
 
-/// Outputs of the pipeline that hold indirect light; where none does, the whole image.
+/// The pipeline's outputs of indirect light; without any, the whole image.
 std::vector<OutputIndex> indirectOutputs(const BoundGraph& graph) {
   std::vector<OutputIndex> indirect, whole;
   for (const BoundOutput& output : graph.outputs) {
@@ -32,7 +32,7 @@ std::vector<OutputIndex> indirectOutputs(const BoundGraph& graph) {
   return indirect.empty() ? whole : indirect;
 }
 
-/// Passes that the point runs without.
+/// Passes that are left out at this point.
 std::set<std::string> leftOutPasses(const TimingContext& context, const Pipeline& pipeline,
                                     const RenderOptions& options) {
   const PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
@@ -42,7 +42,7 @@ std::set<std::string> leftOutPasses(const TimingContext& context, const Pipeline
   return passes;
 }
 
-/// Judges what the frame made.
+/// Judges the voxels that the frame made.
 void judgeMade(const OutBase& made, VoxelReferences& references, GatheredVoxels& voxels) {
   const PortContents contents = made.contents();
   const PortContents::Occupancy* occupancy = contents.occupancy();

@@ -1,4 +1,4 @@
-// The voxels that a point's indirect light is gathered from, judged apart from its errors and times.
+// Judges the voxels that a point's indirect light is gathered from, apart from its errors and times.
 #pragma once
 
 #include <deque>
@@ -11,7 +11,7 @@
 
 namespace lumivox::experiment {
 
-/// The exact voxels of a scene at one time, and what rays cross of them: made once for each grid.
+/// The exact voxels of a scene at one time, and those that rays cross; made once for each grid.
 class VoxelReferences {
  public:
   struct InGrid {
@@ -19,7 +19,7 @@ class VoxelReferences {
     VoxelReference voxels;
     RayCrossings crossings;
   };
-  /// The scene must outlive it. Camera and size are those of the frames whose grids are asked for.
+  /// The scene must outlive this. Camera and size are those of the frames that the grids come from.
   VoxelReferences(const Scene& scene, double time, std::string camera, int width, int height);
   const InGrid& in(const GridPlacement& grid);
 
@@ -31,8 +31,8 @@ class VoxelReferences {
   std::deque<InGrid> made_;
 };
 
-/// Voxels along the longest side of the largest grid that is judged beside errors: the exact ones of a larger
-/// grid take longer than most points.
+/// Voxels along the longest side of the largest grid that is judged beside errors. The exact voxels of a
+/// larger grid take longer than most points.
 inline constexpr int kLargestJudgedGrid = 256;
 
 /// An output of a pass.
@@ -47,8 +47,7 @@ struct PassOutput {
 std::optional<PassOutput> gatheredVoxelsOf(const TimingContext& context, const Pipeline& pipeline,
                                            const ReportPoint& point);
 
-/// Fills the voxels of a point, from a frame of its own that makes nothing else. What goes wrong is their
-/// `whyNot`.
+/// Fills the voxels of a point from a frame that makes nothing else. A failure becomes their `whyNot`.
 void judgeVoxels(const TimingContext& context, const Pipeline& pipeline, VoxelReferences& references,
                  ReportPoint& point);
 

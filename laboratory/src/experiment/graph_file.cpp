@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// s; a committed pipeline takes less than one.
+/// s; drawing a committed pipeline takes less than 1 s
 constexpr double kPatience = 60.0;
 
-/// Two hyphens would end a comment, or make it none.
+/// Two hyphens would end the comment or make it invalid.
 std::string comment(std::string text) {
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at))
     text.replace(at, 2, "- -");

@@ -17,12 +17,12 @@
 namespace lumivox::experiment {
 namespace {
 
-/// The images of every output that has a reference, and the whole image; per seed.
+/// The images of one seed: every output that has a reference, and the whole image.
 struct Judged {
   std::string output;
   Contributes component;
   std::vector<ImageBuffer> seeds;
-  bool deterministic = false;  ///< every seed gives the first image
+  bool deterministic = false;  ///< every seed gives the same image
 };
 
 void collect(std::vector<Judged>& judged, const std::string& output, Contributes component,
@@ -41,7 +41,7 @@ void collectOutputs(std::vector<Judged>& judged, const PipelineExecutor& executo
   for (const std::string& output : executor.outputNames()) {
     const auto image = frame.outputs.find(output);
     const auto component = frame.components.find(output);
-    // An output that is the whole image already is judged as that, once.
+    // An output that already is the whole image is judged once, as that.
     if (image != frame.outputs.end() && component != frame.components.end() &&
         component->second != Contributes::final)
       collect(judged, output, component->second, std::move(image->second));
@@ -71,7 +71,7 @@ ComponentError errorAgainst(const Judged& judged, SceneReference& references, co
   record.bias = bias;
   record.seeds = static_cast<int>(judged.seeds.size());
   record.deterministic = judged.deterministic;
-  // Seeds that are the same bits are one image.
+  // Seeds with the same bits are one image.
   SeedsError error =
       compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
                    reference.mean, reference.variance, references.display(layer).exposure);
@@ -130,9 +130,9 @@ std::string whyFailed(const std::function<void()>& work) {
 
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex, int frames, FrameResult* apart) {
-  // The reference is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
-  // area lights would outweigh every other error. The image plane is shifted by the fraction of a pixel: a
-  // camera that turns by it would shift pixels away from the centre of the image further.
+  // The reference is filtered over the pixel. With one sample at the pixel's centre the silhouettes of bright
+  // area lights would outweigh every other error. The image plane is shifted by a fraction of a pixel;
+  // turning the camera instead would shift pixels far from the image's centre further.
   const int count = std::max(1, positions);
   // Unlike a regular grid, the lattice has as many different rows and columns as positions, which matters
   // where edges run along the rows.
@@ -154,7 +154,7 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
       if (apart != nullptr) *apart = sum;
       continue;
     }
-    // The outer positions against the inner ones: both halves lie around the centre.
+    // The outer positions and the inner ones: each half lies around the centre.
     const bool outer = 4 * position < count || 4 * position >= 3 * count;
     if (sum.healthFindings.empty()) sum.healthFindings = std::move(frame.healthFindings);
     for (auto& [name, image] : sum.outputs) {
@@ -224,9 +224,9 @@ bool addsUp(const FrameResult& frame) {
   return rootMeanSquare(sum.values(), &whole.values()) <= kRounding * rootMeanSquare(whole.values());
 }
 
-/// Makes the images of one seed that errors are taken of: means over positions in the pixel. A look at a few
-/// is enough for most outputs; it is too little where silhouettes are most of the error, which is so of
-/// direct light. Those alone are rendered at all positions, and what they are a part of is added up anew.
+/// Makes the images of one seed whose errors are taken: means over positions in the pixel. A few positions
+/// suffice for most outputs, but not where silhouettes are most of the error, as in direct light. Only those
+/// outputs are rendered at all positions, and the sums that they are a part of are added up anew.
 class JudgedImages {
  public:
   JudgedImages(const MeasureContext& context, const Pipeline& pipeline, const RenderOptions& options,
@@ -242,14 +242,14 @@ class JudgedImages {
   }
 
   const PipelineExecutor& executor() const { return all_; }
-  /// What more positions would add to an error of an output, or take from it, as a share of it; `rmse`: that
-  /// error as an RMSE. What is left of edges is independent of the error, so that squares add up.
+  /// By what share more positions would change an error of an output; `rmse` is that error as an RMSE. The
+  /// remaining error of edges is independent of it, so that squares add up.
   double leftShare(const std::string& output, double rmse) const {
     const auto left = left_.find(output);
     return left == left_.end() || !(rmse > 0.0) ? 0.0 : 0.5 * left->second * left->second / (rmse * rmse);
   }
 
-  /// Whether two seeds give images that differ in a bit, by one frame of each.
+  /// Renders a frame of each of two seeds and compares them bit by bit.
   bool differ(std::uint64_t one, std::uint64_t other) {
     const SceneSnapshot centre = snapshotAt(context_, options_, context_.options.time);
     std::vector<Judged> images;
@@ -286,7 +286,8 @@ class JudgedImages {
                           framesOf(point_.parameters), apart);
   }
 
-  /// By the first look: how the images of every seed are made. True: at all positions, this one too.
+  /// Decides from the first few positions how the images of all seeds are made. True: at all positions, this
+  /// seed included.
   bool choose(const FrameResult& mean, const FrameResult& apart) {
     if (point_.subpixels == std::max(1, context_.options.subpixels)) return false;
     const std::vector<std::string> open = unsettled(mean, apart);
@@ -313,8 +314,9 @@ class JudgedImages {
     return false;
   }
 
-  /// Outputs that more positions would move by more than kSettled of their error: half the difference between
-  /// the means of the outer and the inner positions bounds what is left of edges in the mean of them all.
+  /// Outputs that more positions would move by more than kSettled of their error. Half the difference between
+  /// the means of the outer and the inner positions bounds the error of edges that is left in the mean of
+  /// all.
   std::vector<std::string> unsettled(const FrameResult& mean, const FrameResult& apart) {
     constexpr double kSettled = 0.3;  // an RMSE is sqrt(1 + 0.3^2), 5 % too large at most
     std::vector<Judged> images, differences;
@@ -329,7 +331,7 @@ class JudgedImages {
       if (reference == nullptr || !reference->mean.sameShape(image)) continue;  // told where errors are taken
       const double moves = rootMeanSquare(differences[i].seeds.front().values());
       left_[images[i].output] = moves;
-      // What is not finite is not settled.
+      // Not finite counts as not settled.
       if (!(moves <= kSettled * rootMeanSquare(image.values(), &reference->mean.values())))
         open.push_back(images[i].output);
     }
@@ -346,7 +348,7 @@ class JudgedImages {
   bool looked_ = false;
 };
 
-/// Adds to the uncertainties of what grows with the error that it may be off by this share.
+/// Adds the uncertainty of an error that may be off by this share.
 void widen(ImageError& error, double share) {
   const auto add = [share](double& uncertainty, double value) {
     uncertainty = std::hypot(uncertainty, share * value);
@@ -370,7 +372,7 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
   const std::uint64_t first = context.options.seed;
   bool deterministic = false;
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
-    // Where nobody asks for the seed, or a second one gives the same bits, more would only cost time.
+    // Where no pass reads the seed, or a second seed gives the same bits, more seeds would only cost time.
     if (seed == 1) deterministic = !executor.readsSeed() || !source.differ(first, first + 1);
     if (seed > 0 && deterministic) break;
     FrameResult frame = source.render(first + static_cast<std::uint64_t>(seed), seed == 0);

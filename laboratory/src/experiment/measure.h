@@ -1,5 +1,4 @@
-// One scene's share of a report: the reference, and every point measured for error and, apart from that, for
-// time.
+// Measures the points of one scene: their errors against its reference and, apart from that, their times.
 #pragma once
 
 #include <chrono>
@@ -17,33 +16,33 @@
 
 namespace lumivox::experiment {
 
-/// The reference of a scene with the layers that outputs are judged by, added up once.
+/// The reference of a scene. The layers that outputs are judged by are added up once.
 class SceneReference {
  public:
-  /// `given`: an exposure in place of its own, EV. The scene must outlive it.
+  /// `given`: an exposure, EV, in place of the scene's own. The scene must outlive this.
   SceneReference(const Scene& scene, const ReferenceOptions& options,
                  std::optional<double> given = std::nullopt);
   const LayeredImage& layers() const { return layers_; }
-  /// Sees to it that the layers of so many bounces are there; what layer() gave before is no more valid.
+  /// Makes the layers of so many bounces where they are missing. Pointers from layer() become invalid.
   void require(int bounces);
-  /// Null when the reference has no such layer.
+  /// Null where the reference has no such layer.
   const ReferenceLayer* layer(const std::string& name);
-  /// The reference `frame` frames of an animation later, for flicker: with a quarter of the samples, which
-  /// are others in every frame, so that its noise is independent. Frame 0 is this one.
+  /// The reference `frame` frames of an animation later, for flicker. It has a quarter of the samples,
+  /// different ones in every frame, so that its noise is independent. Frame 0 is this one.
   SceneReference& later(int frame);
-  /// The error of an image of nothing against it: black, or 1 for ambient occlusion.
+  /// The error of an empty image against this layer: black, or 1 for ambient occlusion.
   const ImageError& errorOfNothing(const std::string& name);
-  /// EV at which the images of the scene are shown and judged: viewExposure().
+  /// EV at which the scene's images are shown and judged: viewExposure().
   double exposure();
-  /// How images that are judged against this layer are shown: at that exposure, but for occlusion, a
-  /// fraction, which is shown as it is.
+  /// How images that are judged against this layer are shown: at that exposure, or, for occlusion, which is a
+  /// fraction, as they are.
   Display display(const std::string& layer, Tone tone = Tone::srgb);
   double seconds() const { return seconds_; }
 
  private:
   const Scene* scene_;
   ReferenceOptions options_;
-  std::optional<double> exposure_;  ///< once it is known
+  std::optional<double> exposure_;  ///< set once it is known
   std::map<int, std::unique_ptr<SceneReference>> later_;
   LayeredImage layers_;
   std::map<std::string, std::optional<ReferenceLayer>> cache_;
@@ -51,9 +50,10 @@ class SceneReference {
   double seconds_ = 0.0;
 };
 
-/// Empties a point of its numbers, which are none, and says why.
+/// Marks a point as failed: clears its numbers and records the reason.
 void fail(ReportPoint& point, const std::string& why);
-/// Does it, and says what went wrong; empty: nothing. A wrong text is wrong at every point and goes on up.
+/// Runs the work and returns what went wrong, or nothing. An error in a text is wrong at every point and is
+/// thrown on.
 std::string whyFailed(const std::function<void()>& work);
 
 struct TimingContext {
@@ -68,7 +68,7 @@ struct MeasureContext : TimingContext {
   SceneReference& reference;
 };
 
-/// Adds to a point what a scope takes, s, by what it is for.
+/// Adds the duration of a scope, s, to a point under its purpose.
 class Measuring {
  public:
   Measuring(ReportPoint& point, const char* what) : seconds_(point.measuringSeconds[what]) {}
@@ -83,47 +83,47 @@ class Measuring {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The options of frames that measure a point.
+/// Render options of the frames that measure a point.
 RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& point);
 
-/// How many indirect bounces each output of a pipeline models, by its name; kWholeImage: the most of them.
+/// The number of indirect bounces that each output of a pipeline models, by name; kWholeImage has the most of
+/// them.
 std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);
-/// Whether a pass goes on from what earlier frames left, so that the pipeline's images improve while
-/// nothing changes.
+/// Whether some pass continues from earlier frames, so that images improve while nothing changes.
 bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques);
 
-/// Fills the errors, images and health of a point, with an executor of its own.
+/// Fills the errors, images and health of a point from an executor of its own.
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 /// Time between the frames whose flicker is measured, s.
 inline constexpr double kFlickerStep = 1.0 / 24.0;
-/// Whether flicker is to be measured: something moves meanwhile.
+/// Whether to measure flicker: something moves in the meantime.
 bool flickers(const Scene& scene, const ReportOptions& options);
-/// Fills the flicker of the errors that are there already, where the scene moves.
+/// Adds the flicker to a point's errors where the scene moves.
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
-/// Outputs, pass and port, that stay alive although no image needs them.
+/// Outputs, as pass and port, that stay alive although no image needs them.
 using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
-/// Fills what the passes do, counted in a frame of its own.
+/// Fills the work of the passes, counted in a frame of its own.
 void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                const KeptOutputs& kept = {});
 
-/// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
-/// that drifts then biases none of them. No images are taken.
+/// One point that is timed frame by frame, so that several points can take turns and a drifting machine
+/// biases none of them. It keeps no images.
 class TimedPoint {
  public:
-  /// Renders one frame as warm-up: programs are linked, the pool is filled.
+  /// Renders one frame to warm up: it links programs and fills the pool.
   TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
              const KeptOutputs& kept = {});
   ~TimedPoint();
   TimedPoint(TimedPoint&&) noexcept;
-  void timeFrame();  ///< every kept pass runs; of a point of several frames all of them, from nothing
-  /// Its frames took the same time, as nearly as is told: further ones would say the same.
+  void timeFrame();  ///< runs every kept pass; a point of several frames renders all of them from nothing
+  /// Whether the frames agree within the spread that is reported, so that further ones would add nothing.
   bool isSettled() const;
-  void timeNextFrame();   ///< 1/60 s after the last one
-  void timeStillFrame();  ///< at the same time as the last one, nothing moves
-  /// The camera and every light have moved since the last one. The first call gives the resources of the
-  /// other frames back and warms up anew.
+  void timeNextFrame();   ///< renders 1/60 s after the last one
+  void timeStillFrame();  ///< renders at the time of the last one; nothing moves
+  /// Moves the camera and every light first. The first call releases the resources of the other frames and
+  /// warms up anew.
   void timeMovedFrame();
-  void finish();  ///< fills the point's times; again after further frames
+  void finish();  ///< fills the point's times; may be called again after further frames
   const PipelineExecutor& executor() const;
 
  private:
@@ -131,7 +131,7 @@ class TimedPoint {
   std::unique_ptr<State> state_;
 };
 
-/// The reference layers that were used, for the page.
+/// The reference layers in use, for the page.
 std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used,
                                               Tone tone);
 

@@ -18,10 +18,10 @@
 namespace lumivox::experiment {
 namespace {
 
-/// Between two looks at what other processes do.
+/// Pause between two looks at the work of other processes.
 constexpr std::chrono::milliseconds kPause{200};
 
-/// Does something at the end of a scope, whatever ended it.
+/// Runs some work at the end of a scope, however it ends.
 template <class Work>
 class Finally {
  public:
@@ -57,18 +57,18 @@ std::vector<StoredImage> storedImages(const std::vector<OutputImages>& outputs) 
   return stored;
 }
 
-/// The parts of a point's costs.
+/// Kinds of work in a point's costs.
 const std::string kErrorsWork = "errors", kTimesWork = "times", kReferenceWork = "reference";
-/// A whole point of a pipeline on any scene.
+/// A whole point of a pipeline, on any scene.
 const std::string kPointWork = "point";
 
-/// Tells points of one scene from each other.
+/// Unique among the points of one scene.
 std::string idOf(const WantedPoint& point) {
   return fmt::format("{}|{}|{}", point.loaded->shown, pointText(point.point.parameters),
                      point.seed ? std::to_string(*point.seed) : "");
 }
 
-/// One point that does not fit into memory, say, must not cost the others.
+/// A point that does not fit into memory, say, must not cost the others.
 void failed(StoredRun& run, const std::string& why) {
   fail(run.point, why);
   logWarning("{}: {}", runText(run), why);
@@ -151,7 +151,7 @@ Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t
   for (const WantedPoint& point : pending) {
     StoredRun run = open(point);
     const std::string key = run.identity.key();
-    // Failed points are among those that are asked for, where they are to be tried again.
+    // A failed point counts as missing where it is to be retried.
     const auto isThere = [&] {
       const std::optional<StoredRun> stored = store_.find(key);
       return stored && stored->point.failure.empty();
@@ -161,7 +161,7 @@ Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t
       ++byOthers;
     } else if (batch.size() == kBatch || !store_.claim({key}).front()) {
       left.push_back(point);
-    } else if (isThere()) {  // since the look before the claim
+    } else if (isThere()) {  // stored since the look before the claim
       store_.release({key});
       done_.insert(idOf(point));
       ++byOthers;
@@ -177,7 +177,7 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
                                          const std::function<void(std::size_t, std::size_t)>& done) {
   std::vector<WantedPoint> pending = points;
   std::vector<std::string> own;
-  // A wrong text ends the batch; others may then try.
+  // A wrong text ends the batch; other processes may then try.
   const Finally release([&] { store_.release(own); });
   bool told = false;
   while (!pending.empty()) {
@@ -268,7 +268,7 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
     options.camera = options_.camera;
     options.width = width_;
     options.height = height_;
-    // A pipeline that fails is reported when it is measured.
+    // A failing pipeline is reported when it is measured.
     whyFailed([&] {
       const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
       for (const auto& [output, bounces] : bouncesOf(executor))
@@ -297,8 +297,8 @@ Measurer::Frame Measurer::frame(const WantedPoint& point) {
   const TimingContext context{device_, techniques_, scene_, options_, width_, height_};
   PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline,
                             renderOptionsOf(context, run.point));
-  // The first frame of a process also compiles programs for the device, which may take several times its
-  // time.
+  // The first frame of a process also compiles programs for the device, which may take several times as long
+  // as the frame.
   constexpr double kLongMs = 10000.0;
   double milliseconds = executor.render(options_.time, 0, PipelineExecutor::Images::no).frameMs;
   if (milliseconds < kLongMs) {
@@ -331,8 +331,8 @@ std::string Measurer::subjectOf(const WantedPoint& point) const {
 }
 
 double Measurer::plannedSeconds(const WantedPoint& point, const std::string& work) const {
-  // As committed pipelines took on the Cornell box (bench/point_cost). Seeds are those of errors, and their
-  // images are compared with references.
+  // From the committed pipelines on the Cornell box (bench/point_cost). Seeds are for errors; their images
+  // are compared with references.
   constexpr double kTimesFrames = 11.0, kErrorsFrames = 5.0, kSeedsFrames = 10.0, kSeconds = 0.05;
   constexpr double kPixelSeconds = 3e-5;
   const double frame = knownFrameSeconds(point);
@@ -346,7 +346,7 @@ void Measurer::noteCost(const WantedPoint& point, const std::string& work, doubl
 }
 
 double Measurer::mostSeconds(const WantedPoint& point) {
-  // Of a point the whole is bounded better than its works are.
+  // The bound of a whole point is tighter than those of its parts.
   constexpr double kFrames = 14.0, kFramesWithSeeds = 24.0, kSeconds = 1.0;
   const double frame = frameSeconds(point);
   const std::string subject = subjectOf(point);
@@ -464,7 +464,7 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
     seconds_[entry.run.identity.key()] = seconds;
     ++untimedDone_;
     if (!takenUp && entry.run.point.failure.empty()) noteCost(entry.wanted, kErrorsWork, seconds);
-    store_.claim(keys);  // still at it
+    store_.claim(keys);  // still at work
     if (done && &entry != &batch.back()) done(1, 0);
   }
   const Clock::time_point start = Clock::now();
@@ -480,7 +480,7 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
     logDetails("{}: {:.2f} s, {:.1f} times its frame of {:.3f} s{}", runText(entry.run), sum,
                1000.0 * sum / entry.run.point.frameMs.median, entry.run.point.frameMs.median / 1000.0, parts);
   }
-  // Each has as many frames as the others.
+  // All points of a batch have the same number of frames.
   double frames = 0.0;
   for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;
   const double all = secondsSince(start);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace experiment;
 
-/// The given pipelines or every committed one: here all of them are looked at, also those that do not suit.
+/// The given pipelines or every committed one, including those that do not suit the scene.
 ReportOptions withPipelines(ReportOptions options) {
   if (!options.pipelines.empty()) return options;
   const auto folder = committedScenes(options.scenes.empty() ? std::filesystem::path()

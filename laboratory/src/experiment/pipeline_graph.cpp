@@ -15,10 +15,10 @@ constexpr const char* kStyle =
     "  node [shape=box style=filled fillcolor=\"#eef3f8\" color=\"#1f6fb2\" fontname=Helvetica fontsize=12]\n"
     "  edge [color=\"#1f6fb2\" fontname=Helvetica fontsize=11 arrowsize=0.7]\n";
 constexpr const char* kLeftOut = " style=dashed color=\"#8a8a8a\" fontcolor=\"#666666\"";
-/// Characters of a reason in one line of a box.
+/// Longest line of a reason in a box, in characters.
 constexpr std::size_t kReasonWidth = 30;
 
-/// A word of Graphviz, which reads entities of HTML in it.
+/// A quoted string of Graphviz, which reads HTML entities in it.
 std::string dotString(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -33,7 +33,7 @@ std::string dotString(const std::string& text) {
   return result + '"';
 }
 
-/// In lines that a box has room for.
+/// The reason in lines that fit into a box.
 std::string broken(const std::string& reason) {
   std::istringstream words(reason);
   std::string text;
@@ -54,7 +54,7 @@ struct Reasons {
       if (one.level == LeftOut::Level::resource) outputs[one.what] = one.why;
     }
   }
-  /// Empty for what is not left out.
+  /// Empty where the pass is not left out.
   std::string ofPass(const std::string& name) const { return find(passes, name); }
   std::string ofOutput(const std::string& name) const { return find(outputs, name); }
 
@@ -107,7 +107,7 @@ class Drawing {
                          why.empty() ? "" : kLeftOut);
   }
 
-  /// Left out with its source, with the output alone, or with its reader.
+  /// An arrow may be left out with its source, with the output alone, or with its reader.
   void arrow(OutputIndex source, const std::string& reader, const std::string& input, bool history,
              std::string why) {
     const OutBase& output = graph_.output(source);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder `scenes` with `pipelines` in it, in `start` or above.
+/// The folder `scenes` that contains `pipelines`, in `start` or a folder above it.
 std::optional<fs::path> scenesAbove(fs::path start) {
   std::error_code ignored;
   start = fs::weakly_canonical(start, ignored);
@@ -29,15 +29,15 @@ std::optional<fs::path> scenesAbove(fs::path start) {
   return std::nullopt;
 }
 
-/// Why an output of a pass stays at its neutral element on a scene with these traits: its own need, its
-/// pass's, or that of a pass that a required input comes from.
+/// Finds why an output of a pass stays at its neutral element on a scene with these traits: a need of its
+/// own, of its pass, or of a pass that a required input comes from.
 class NeedsWalk {
  public:
   NeedsWalk(const Pipeline& pipeline, TechniqueSource& techniques, const SceneTraits& traits)
       : pipeline_(pipeline), techniques_(techniques), traits_(traits) {}
 
   std::string unmet(const std::string& passName, const std::string& port) {
-    if (!visited_.insert(passName + "." + port).second) return {};  // a cycle; the binding reports it
+    if (!visited_.insert(passName + "." + port).second) return {};  // a cycle, which binding reports
     const auto text = std::find_if(pipeline_.passes.begin(), pipeline_.passes.end(),
                                    [&](const PassText& pass) { return pass.name == passName; });
     if (text == pipeline_.passes.end()) return {};
@@ -121,7 +121,7 @@ std::string whyUnsuited(const Pipeline& pipeline, TechniqueSource& techniques, c
       if (need.empty()) return {};
       if (firstNeed.empty()) firstNeed = fmt::format("output '{}' needs {}", output.name, need);
     }
-    if (adds) break;  // a pipeline of direct light alone is judged by that
+    if (adds) break;  // a pipeline of direct light alone is judged by its direct light
   }
   return firstNeed;
 }
@@ -135,8 +135,8 @@ std::pair<int, int> reducedResolution(int width, int height, int limit) {
 }
 
 int referenceSamplesFor(int width, int height) {
-  // Paths in the whole image; measured so that the committed scenes take about a minute on two cores at 128
-  // x 128.
+  // Paths in the whole image; with so many the committed scenes take about a minute on two cores at 128 x
+  // 128.
   constexpr double kPaths = 8.0e6;
   constexpr int kFewest = 64, kMost = 4096;
   const double pixels = std::max(1.0, static_cast<double>(width) * height);
@@ -149,7 +149,7 @@ namespace lumivox::experiment {
 
 namespace {
 
-/// By what they say: 64 is 64, whether written in the text or in a sweep.
+/// Compares the values, not their texts: 64 in the text equals 64 in a sweep.
 bool sameParameters(const ParameterValues& a, const ParameterValues& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
     return one.first == other.first && one.second.text() == other.second.text();

@@ -1,4 +1,4 @@
-// Which pipelines and which points a report measures.
+// The pipelines and points that a report measures.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@ struct PlannedPoint {
   ParameterValues parameters;
   bool isDefault = false;
   std::vector<std::uint64_t> seeds =
-      {};  ///< each a run of its own; empty: one run with those of the command line
+      {};  ///< each a run of its own; empty: one run with the seeds of the command line
 };
 
 /// The default point and the points of every sweep, each once. Settings pin their axes. A point of several
-/// sweeps has the seeds of all. A progressive pipeline also has its default point after 2, 4 .. `frames`
-/// frames; any other goes without an axis of frames.
+/// sweeps has the seeds of all of them. A progressive pipeline also has its default point after 2, 4 ..
+/// `frames` frames; other pipelines drop an axis of frames.
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
                                         bool openSweeps, bool progressive = false, int frames = 1);
 /// The points of these sweeps alone.
@@ -29,10 +29,10 @@ std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const Paramet
 /// else empty.
 std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive);
 
-/// Of the assignments "name=value", those whose parameter the pipeline has.
+/// Those assignments "name=value" whose parameter the pipeline has.
 std::vector<std::string> settingsFor(const Pipeline& pipeline, const std::vector<std::string>& assignments);
 
-/// A path as a person would type it here: relative where it lies below the working directory.
+/// A path as one would type it: relative where it lies below the working directory.
 std::string shownPath(const std::filesystem::path& path);
 
 /// Quotes an argument for a POSIX shell where it needs it.

@@ -1,4 +1,4 @@
-// The saving by leaving out, and the whole image of a pipeline.
+// Measures what leaving out saves; composes the whole image of a pipeline.
 #include <cmath>
 #include <cstring>
 
@@ -22,8 +22,8 @@ bool sameBits(const FrameResult& a, const FrameResult& b) {
   return true;
 }
 
-/// Times of several frames of one executor, in each of which every pass runs: of the frame, and apart from
-/// that, since their instruments cost time, of its passes.
+/// Times of several frames of one executor in which every pass runs. Passes are timed in frames of their own,
+/// since their instruments cost time.
 struct Series {
   PipelineExecutor& executor;
   double time;  ///< s
@@ -73,13 +73,13 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
       record.passOrder.push_back(pass.name);
     }
   }
-  // Alternately, so that a machine that grows slower or faster meanwhile does so for both.
+  // The two take turns, so that a machine that becomes slower or faster does so for both.
   Series prunedSeries{pruned, time}, unprunedSeries{unpruned, time};
   for (int repeat = 0; repeat < repeats; ++repeat) {
     prunedSeries.add();
     unprunedSeries.add();
   }
-  record.explanation = pruned.explain();  // here: the memory is that of a whole frame
+  record.explanation = pruned.explain();  // taken here, where the memory is that of a whole frame
   record.prunedBytes = record.explanation.poolBytes;
   record.unprunedBytes = unpruned.explain().poolBytes;
   for (LeftOut& leftOut : record.explanation.leftOut) {
@@ -90,8 +90,8 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   }
   if (repeats <= 0) return record;
 
-  // Frames that follow: time goes on and the camera moves by a thousandth of the scene, as in an interactive
-  // walk. A camera that stands still would leave nothing to do at all in a static scene, which says little.
+  // Following frames: time goes on and the camera moves by a thousandth of the scene, as in an interactive
+  // walk. With a still camera a static scene would leave nothing to do, which says little.
   options.keepEverything = false;
   options.interactive = true;
   PipelineExecutor walking(device, techniques, scene, pipeline, options);

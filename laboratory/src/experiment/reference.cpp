@@ -56,8 +56,7 @@ std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, cons
     const std::optional<ReferenceLayer> layer = find(part);
     if (!sum || !layer || !sum->mean.sameShape(layer->mean)) return std::nullopt;
     add(sum->mean, layer->mean);
-    // The layers share camera rays; their covariance is not recorded, so the sum of variances is an estimate
-    // that leaves it out.
+    // The layers share camera rays. Their covariance is not recorded, so the sum of variances leaves it out.
     if (sum->variance.sameShape(layer->variance)) add(sum->variance, layer->variance);
   }
   return sum;

@@ -1,4 +1,4 @@
-// The main job from beginning to end.
+// Makes a report: the main job from beginning to end.
 #include "lumivox/experiment/report.h"
 
 #include <fmt/format.h>
@@ -58,7 +58,7 @@ class SceneReport {
         points_.push_back({{loaded, std::move(planned)}});
   }
 
-  /// Of all its points.
+  /// Store keys of all points.
   std::vector<std::string> keys() const {
     std::vector<std::string> keys;
     for (const Point& point : points_) keys.push_back(measurer_.key(point.wanted));
@@ -86,8 +86,7 @@ class SceneReport {
   std::size_t missing() const { return count(State::missing); }
   std::size_t takenUp() const { return count(State::takenUp); }
 
-  /// What the cheapest of the points that are missing is expected to take, s, of those that were looked at;
-  /// nothing where none was.
+  /// Expected time, s, of the cheapest missing point among those that were looked at; empty without any.
   std::optional<double> leastMissingSeconds() {
     std::optional<double> least;
     for (const Point& point : points_)
@@ -97,18 +96,18 @@ class SceneReport {
     return least;
   }
 
-  /// Which default points: of the pipelines that have the name of a technique, which stand for it, or of the
-  /// others.
+  /// Which default points to measure: those of pipelines that bear a technique's name and stand for it, or
+  /// the others.
   enum class Defaults { all, ofTechniques, others };
 
-  /// The default points, as long as there is time; in turns, a batch at once. False when none was measured.
+  /// Measures default points batch by batch while there is time. False when none was measured.
   bool measureDefaults(Defaults which, const Budget& budget, const std::function<void(std::size_t)>& done) {
-    std::vector<std::pair<double, Point*>> candidates;  // with what they are expected to take, s
+    std::vector<std::pair<double, Point*>> candidates;  // with their expected times, s
     double seconds = 0.0;
     for (Point& point : points_) {
       if (point.state != State::missing || !point.wanted.point.isDefault) continue;
       if (which != Defaults::all && standsForTechnique(point) != (which == Defaults::ofTechniques)) continue;
-      // To know what a further one takes would take its time, too.
+      // Looking at a further pipeline takes time, too.
       constexpr double kEnough = 0.5;
       if (!budget.allows(which == Defaults::others ? seconds : 0.0) ||
           (which == Defaults::others && budget.isLimited() && seconds > kEnough * budget.left()))
@@ -116,7 +115,7 @@ class SceneReport {
       candidates.emplace_back(budget.isLimited() ? measurer_.mostSeconds(point.wanted) : 0.0, &point);
       if (budget.allows(seconds + candidates.back().first)) seconds += candidates.back().first;
     }
-    // The cheapest first, so that there is soon something to see.
+    // The cheapest first, so that something can soon be seen.
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Point*> batch;
@@ -131,8 +130,8 @@ class SceneReport {
     return !batch.empty();
   }
 
-  /// Of each pipeline in turn the next point, as long as the time allows; false when nothing was left to do.
-  /// A limited time is not spent on looking at a pipeline for whose default point there was none.
+  /// Measures the next point of each pipeline in turn while there is time; false when nothing was left to do.
+  /// A limited time is not spent on pipelines that had no time for their default point.
   bool measureMore(const Budget& budget, const std::function<void(std::size_t)>& done) {
     std::vector<Point*> batch;
     double seconds = 0.0;
@@ -164,8 +163,8 @@ class SceneReport {
     });
   }
 
-  /// With and without leaving out, of every pipeline whose default point works, as long as there is time:
-  /// whether the images are the same and what memory it saves, or, timed, how much time too.
+  /// Compares every pipeline whose default point works with and without leaving out, while there is time:
+  /// whether the images are the same, the memory saved and, if `timed`, the time saved.
   void measurePrunings(bool timed, const Budget& budget, const std::function<void()>& atWork) {
     for (const Point& point : points_) {
       atWork();
@@ -182,7 +181,7 @@ class SceneReport {
     }
   }
 
-  /// So that it is known what its points cost, before the first is measured.
+  /// Looks at every pipeline, so that the costs of points are known before the first is measured.
   void lookAtAll() {
     std::vector<WantedPoint> some;
     for (const Point& point : points_)
@@ -191,8 +190,8 @@ class SceneReport {
     measurer_.lookAt(some);
   }
 
-  /// What is expected of points, of how much time leaving out saves, and of the control, s; of what would end
-  /// beyond `room` s nothing.
+  /// Expected time of the remaining points, prunings and controls, s. Work that would end beyond `room` s
+  /// does not count.
   double secondsLeft(double room, std::size_t controls) const {
     std::vector<WantedPoint> missing, all;
     for (const Point& point : points_) {
@@ -212,7 +211,7 @@ class SceneReport {
     return left + measurer_.controlSeconds(all, controls);
   }
 
-  /// Times points once more: how far apart times of the same thing are here.
+  /// Times points once more, to learn how far repeated times differ on this machine.
   void control(std::size_t most) {
     std::vector<WantedPoint> wanted;
     for (const Point& point : points_)
@@ -221,7 +220,7 @@ class SceneReport {
     if (!why.empty()) logWarning("{}: nothing could be timed twice: {}", shown_, why);
   }
 
-  /// As it stands now.
+  /// The record so far.
   SceneRecord record(const std::vector<PeakRate>& peakRates, const ResultsStore& controls) {
     const Scene& scene = measurer_.scene();
     SceneRecord record;
@@ -268,8 +267,8 @@ class SceneReport {
     State state = State::missing;
   };
 
-  /// Of a comparison with and without leaving out: warm-ups of both; where it is timed, of each three frames
-  /// or more, whole and by passes, and those that follow.
+  /// Frames of a comparison with and without leaving out: the warm-ups of both and, where it is timed, three
+  /// or more frames of each, whole and by passes, and the following frames.
   static constexpr double kPruningFrames = 4.0, kTimedPruningFrames = 25.0;
   static constexpr const char* kPruningWork = "leaving out";
   std::string subjectOf(const Point& point) const { return shown_ + ", " + point.wanted.loaded->shown; }
@@ -286,7 +285,7 @@ class SceneReport {
     for (Point* point : some) point->state = State::measured;
   }
 
-  /// Whether its pipeline is that of a technique's own name.
+  /// Whether the pipeline bears a technique's own name.
   bool standsForTechnique(const Point& point) const {
     const Pipeline& pipeline = point.wanted.loaded->pipeline;
     const std::vector<std::string> used = pipeline.techniques();
@@ -336,7 +335,7 @@ class SceneReport {
       fail(record.point, "the scene's reference could not be made: " + whyNoReference_);
       return record;
     }
-    // Names and command are those of this report, whoever measured the point.
+    // Names and command are those of this report, even if another one measured the point.
     StoredRun kept = checkpoint_.find(opened.identity.key()).value();
     record.created = kept.created;
     record.point = std::move(kept.point);
@@ -358,16 +357,16 @@ class SceneReport {
   std::vector<PruningRecord> pruning_;
 };
 
-/// Measures all scenes, and tells `published` whenever there is more to tell. Without a limit on time
-/// everything; else first a point for each technique and what each pipeline leaves out, then the other
-/// default points, the points of sweeps, and how much time leaving out saves. What would end too late is not
-/// begun. Returns the least budget with which another point would have begun, s, where it left points and
-/// none could; else 0.
+/// Measures all scenes and calls `published` whenever there are new results. Without a time limit it measures
+/// everything. Otherwise it begins with a point of each technique and what each pipeline leaves out, then
+/// takes the other default points, the points of sweeps and the time that leaving out saves, and begins
+/// nothing that would end too late. Returns the least budget, s, with which another point would have begun,
+/// where points are left but none could; else 0.
 double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget,
                   results::UnfinishedStore& unfinished, const std::function<void()>& published) {
   std::size_t finished = 0, total = 0;
   for (const SceneReport& scene : scenes) total += scene.missing();
-  // Where time is short one point tells of the machine's mood.
+  // One point has to show the machine's drift where time is short.
   const std::size_t controls = budget.isLimited() ? 1 : Measurer::kBatch;
   const auto done = [&](std::size_t points) {
     finished += points;
@@ -396,7 +395,8 @@ double measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options,
     }
     published();
   }
-  // What leaving out saves in time is kept in no store: it must not take the time of points again and again.
+  // No store keeps the time that leaving out saves; measuring it must not take the time of points in every
+  // run.
   if (!budget.isLimited()) prune(true);
   const double before = budget.spent();
   for (bool more = true; more;) {
@@ -453,7 +453,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   data.date = dateText();
   data.peakRates = storedPeakRates(device, options.store);
 
-  // Everything that can be wrong in any text is found before the first image is rendered.
+  // All texts are checked before the first image is rendered.
   PipelineChoice choice(options, techniques);
   std::vector<Scene> scenes;
   std::vector<std::vector<const LoadedPipeline*>> pipelines;
@@ -468,7 +468,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   if (options.allRead) options.allRead();
   results::UnfinishedStore unfinished(unfinishedStoreOf(options.output), options.commandLine);
   ResultsStore& checkpoint = unfinished.store();
-  std::deque<SceneReport> reports;  // a measurer stays where it is
+  std::deque<SceneReport> reports;  // a measurer cannot be moved
   const auto costs = std::make_shared<Costs>();
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -496,7 +496,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
       data.techniques.push_back({name, technique->hash.text(), technique->shaders.hash.text(),
                                  technique->meaning, technique->paper});
   data.skipped = techniques.skipped();
-  // The page as it is now.
+  // Writes the page with what is known so far.
   const auto writeNow = [&](bool complete) {
     data.complete = complete;
     data.measuringSeconds = budget.spent();
@@ -520,7 +520,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
       data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
     }
   writeNow(true);
-  // What there was no time for is measured when it is asked for again: until then what is there stays.
+  // Points without time are measured by the next run; until then the page keeps what it has.
   const bool isWhole = std::all_of(reports.begin(), reports.end(),
                                    [](const SceneReport& report) { return report.missing() == 0; });
   if (isWhole) unfinished.finish();

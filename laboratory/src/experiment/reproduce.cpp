@@ -1,4 +1,4 @@
-// Measuring the set-ups of a published table or figure, and rendering the panels of a figure.
+// Measures the set-ups of a published table or figure and renders the panels of a figure.
 #include "lumivox/experiment/reproduce.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ namespace {
 using namespace experiment;
 namespace fs = std::filesystem;
 
-/// One set-up with the rows and points that it answers.
+/// A set-up with the rows and points that it gives values for.
 struct TimedSetUp {
   const Scene* scene = nullptr;
   std::string sceneShown;
@@ -87,7 +87,7 @@ class Reproduction {
     for (const PublishedCurve& curve : result_.published.curves)
       result_.curves.push_back({curve.name, curve.over, curve.points.front().quantity, curve.growth,
                                 std::vector<MeasuredPoint>(curve.points.size())});
-    // Measured rows stay where they are from here on.
+    // From here on measured rows keep their addresses.
     for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
     for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
     std::vector<std::string> names;
@@ -99,7 +99,7 @@ class Reproduction {
     for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
     result_.judged = judge(result_.rows);
     if (store_ != nullptr) store();
-    setUps_.clear();  // their memory, which images may need
+    setUps_.clear();  // frees their memory, which images may need
     for (const PublishedPanel& panel : result_.published.panels) {
       const Clock::time_point start = Clock::now();
       result_.panels.push_back(show(panel));
@@ -137,7 +137,7 @@ class Reproduction {
                            readOff(setUp, timed.executor(), *published, *measured);
                          steps_.timed(nameOf(setUp));
                        }});
-    // A store takes the times of later frames too.
+    // A store holds the times of following frames, too.
     timeInTurns(device_, turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
     for (std::size_t i = 0; i < turns.size(); ++i) {
       TimedSetUp& setUp = setUps_[i];
@@ -166,10 +166,10 @@ class Reproduction {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
 
-  /// The points that a sweep would store: the times, and errors and work, which are measured apart from them.
-  /// The verdict stands whether this succeeds or not.
+  /// Stores the points as a sweep would: times, and errors and work measured apart from them. The verdict
+  /// does not depend on its success.
   void store() {
-    // A scene that was made finer here is none that a sweep could name.
+    // No sweep could name a scene that was subdivided here.
     for (TimedSetUp& setUp : setUps_) {
       const Clock::time_point start = Clock::now();
       const bool isNew = setUp.subdivisions == 0 && store(setUp);
@@ -189,7 +189,7 @@ class Reproduction {
     guarded(setUp, [&] {
       PointRecord record;
       record.point = run.point;
-      // A pipeline that only times something makes no image.
+      // A pipeline that is only timed may make no image.
       if (!setUp.loaded.pipeline.outputs.empty()) {
         const MeasureContext context{timingOf(setUp), referenceOf(setUp)};
         measureErrors(context, setUp.loaded.pipeline, record);
@@ -216,7 +216,7 @@ class Reproduction {
     return *reference;
   }
 
-  /// One set-up that cannot be measured must not cost the others.
+  /// A set-up that cannot be measured must not cost the others.
   template <class Work>
   void guarded(TimedSetUp& setUp, const Work& work) {
     if (!setUp.failure.empty()) return;
@@ -230,7 +230,7 @@ class Reproduction {
     }
   }
 
-  /// The scene, read once; null, and why, when its model is not on this machine.
+  /// The scene, read once; null with the reason where its model is absent.
   const Scene* sceneOf(const PublishedSetUp& published, std::string& whyNot) {
     const auto [known, isNew] = scenes_.emplace(std::pair(published.scene, published.subdivisions), nullptr);
     if (isNew) {
@@ -246,7 +246,7 @@ class Reproduction {
     return known->second.get();
   }
 
-  /// The scene of a set-up all of whose parts are here, else null and why not.
+  /// The scene of a set-up with all its parts present, else null with the reason.
   const Scene* sceneWithAll(const PublishedSetUp& published, std::string& whyNot) {
     if (published.pipeline)
       for (const std::string& technique : published.pipeline->techniques())
@@ -288,7 +288,7 @@ class Reproduction {
     }
   }
 
-  /// All parameters of the pipeline, reduced.
+  /// All parameters of the pipeline, reduced as the set-up says.
   ParameterValues parametersOf(const PublishedSetUp& published) const {
     ParameterValues parameters;
     for (const PipelineParameter& parameter : published.pipeline->parameters)
@@ -443,7 +443,7 @@ class Reproduction {
       logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
     }
     if (!shown.image.empty()) {
-      // A pass may make images that are none of the camera, of another size.
+      // A pass may make images that are not the camera's, of another size.
       const auto [width, height] = sizeOf(panel, *scene);
       meterImage(meter_, *scene, snapshotOf(*scene, panel.time, panel.camera, width, height), shown.image);
       const ImageBuffer bright = luminance(shown.image);

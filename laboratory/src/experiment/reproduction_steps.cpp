@@ -56,7 +56,7 @@ double ReproductionSteps::secondsLeft() const {
   const auto add = [&](std::optional<double> seconds) {
     left = left && seconds ? std::optional(*left + *seconds) : std::nullopt;
   };
-  // Of frames some are rendered once more, by passes; a store takes those that follow, too.
+  // Some frames are rendered once more for the times of passes; a store also takes following frames.
   const double frames = options_.repeats + kLeastRepeats + (stores_ ? 2 * options_.repeats : 0);
   for (const auto& [setUp, stage] : setUps_) {
     const std::optional<double> opened = costs_.expected(setUp, kOpened, 1.0);

@@ -1,4 +1,4 @@
-// How far the reproduction of a published result is.
+// The progress of reproducing a published result.
 #pragma once
 
 #include <chrono>
@@ -17,13 +17,13 @@ class ReproductionSteps {
  public:
   ReproductionSteps(const ReproduceOptions& options, bool stores) : options_(options), stores_(stores) {}
 
-  /// Before the first step. `traced`: of each panel, whether it shows the path-traced reference.
+  /// Call before the first step. `traced`: for each panel, whether it shows the path-traced reference.
   void expect(const std::vector<std::string>& setUps, std::vector<bool> traced);
 
   using Clock = std::chrono::steady_clock;
   void opened(const std::string& setUp, Clock::time_point start);
   void timed(const std::string& setUp);
-  /// `isNew`: the store did not have it.
+  /// `isNew`: the store lacked it.
   void stored(const std::string& setUp, Clock::time_point start, bool isNew);
   void shownPanel(Clock::time_point start);
 

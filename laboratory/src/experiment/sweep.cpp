@@ -1,4 +1,4 @@
-// Sweeps: plan, leave out what is stored, measure the rest.
+// Runs sweeps: plans the points, skips those that are stored and measures the rest.
 #include "lumivox/experiment/sweep.h"
 
 #include <fmt/format.h>
@@ -18,20 +18,21 @@ using namespace experiment;
 
 namespace {
 
-/// One scene with all points that are wanted on it, so that its reference is made once.
+/// A scene with all points to measure on it, so that its reference is made once.
 struct ScenePlan {
   std::unique_ptr<Measurer> measurer;
   std::vector<WantedPoint> points, missing;
 };
 
-/// Everything that a sweep measures, in the order of the scenes as they are named first.
+/// All points of a sweep, by scenes in the order of first mention.
 class SweepPlan {
  public:
   SweepPlan(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options, ResultsStore& store,
             const std::function<Scene(const std::filesystem::path&)>& loadScene)
       : device_(device), techniques_(techniques), options_(options), store_(store), loadScene_(loadScene) {}
 
-  /// A scene of the command line: the pipelines that are given or suit it, at the points of their own sweeps.
+  /// Adds a scene of the command line: the pipelines that are given or suit it, at the points of their own
+  /// sweeps.
   void addScene(const std::filesystem::path& file, PipelineChoice& choice, SweepSummary& summary) {
     ScenePlan& plan = planOf(file);
     std::vector<std::pair<std::string, std::string>> unsuited;
@@ -132,7 +133,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   SweepSummary summary;
   PipelineChoice choice(measure, techniques);
   SweepPlan plan(device, techniques, options, store, loadScene);
-  // All texts are read before the first image is rendered.
+  // All texts are checked before the first image is rendered.
   for (const std::filesystem::path& file : measure.scenes) plan.addScene(file, choice, summary);
   for (const std::filesystem::path& file : options.texts) plan.addText(file, summary);
   const std::size_t total = plan.findMissing(summary);
@@ -157,7 +158,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }
-  // The first point is timed again at the end: how far apart times of the same thing are here.
+  // The first point is timed again at the end, to learn how far repeated times differ on this machine.
   if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));

@@ -1,4 +1,4 @@
-// One point that is timed frame by frame.
+// Times one point frame by frame.
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,10 +19,10 @@ struct TimedPoint::State {
   RenderOptions options;
   const KeptOutputs kept;
   const double time;  ///< s
-  const int frames;   ///< accumulated by the point
+  const int frames;   ///< that the point accumulates
   std::optional<PipelineExecutor> executor;
   bool moving = false;  ///< the executor is that of moved frames
-  int index = 0;        ///< of the frame that was rendered last
+  int index = 0;        ///< of the last frame rendered
   double now = 0.0;     ///< its time, s
   std::vector<double> frameMs, shares, nextMs, stillMs, movedMs;
   std::map<std::string, std::vector<double>> deviceMs, hostMs;
@@ -40,15 +40,15 @@ struct TimedPoint::State {
         frames(framesOf(pointToTime.parameters)),
         now(time) {}
 
-  /// A new executor, with its first frame.
+  /// Makes a new executor and renders its first frame.
   FrameResult warmUp() {
-    executor.reset();  // its memory first
+    executor.reset();  // frees its memory first
     executor.emplace(device, techniques, scene, pipeline, options);
     for (const auto& [pass, port] : kept) executor->keepOutput(pass, port);
     return executor->render(time, 0, PipelineExecutor::Images::no);
   }
 
-  /// The point's frames from nothing; all that they took, ms, and the first one.
+  /// Renders the point's frames from nothing; returns their total time, ms, and the first frame.
   std::pair<double, FrameResult> fromNothing(PipelineExecutor::Timing timing) {
     executor->invalidate();
     executor->emptyHistories();
@@ -95,8 +95,8 @@ void TimedPoint::timeFrame() {
   s.frameMs.push_back(milliseconds);
   if (first.frameMs > 0.0) s.shares.push_back(first.betweenPassesMs / first.frameMs);
   for (const PassRecord& pass : first.passes) s.hostMs[pass.name].push_back(pass.hostMs);
-  // The passes in frames of their own: their instruments are no part of the frame's time. How a frame is
-  // shared out among them differs less from frame to frame than its time does.
+  // Passes are timed in frames of their own, since their instruments cost time. A pass's share of a frame
+  // varies less than the frame's time.
   if (s.frameMs.size() <= kLeastRepeats) s.fromNothing(PipelineExecutor::Timing::passes);
 }
 
@@ -126,7 +126,7 @@ void TimedPoint::timeMovedFrame() {
   State& s = *state_;
   const Measuring measuring(s.point, "moved frames");
   if (!s.moving) {
-    finish();  // what the executor still holds
+    finish();  // reads the times that the executor still holds
     s.options.interactive = true;
     s.moving = true;
     s.warmUp();
@@ -150,7 +150,7 @@ void TimedPoint::timeMovedFrame() {
 void TimedPoint::finish() {
   State& s = *state_;
   const std::vector<std::vector<PassRecord>> timed = s.executor->timedPasses();
-  // Of a point of several frames what each pass took in all of them.
+  // A point of several frames has the sum of each pass over all of them.
   for (std::size_t first = 0; first + static_cast<std::size_t>(s.frames) <= timed.size();
        first += static_cast<std::size_t>(s.frames)) {
     std::map<std::string, double> sums;

@@ -21,10 +21,9 @@ namespace {
 
 using namespace experiment;
 
-constexpr double kNearLimit =
-    2.0;  // points of the Pareto front beyond this many times the limit are not followed
+constexpr double kNearLimit = 2.0;  // times the limit; points of the Pareto front beyond it are not followed
 
-/// Whether a parameter of the pipeline goes to a whole number of some pass.
+/// Whether a parameter of the pipeline sets a whole number of some pass.
 bool isWhole(const Pipeline& pipeline, TechniqueSource& techniques, const std::string& name) {
   for (const PassText& text : pipeline.passes) {
     const Technique* technique = techniques.technique(text.technique);
@@ -43,7 +42,7 @@ bool isWhole(const Pipeline& pipeline, TechniqueSource& techniques, const std::s
   return false;
 }
 
-/// The pipeline's text with other defaults, included files spliced in.
+/// The pipeline's text with other defaults and with included files in place.
 std::string textWith(const Pipeline& pipeline, const ParameterValues& values) {
   dsl::Document document = dsl::parseFile(pipeline.file);
   for (dsl::Item& top : document.items) {
@@ -69,8 +68,8 @@ class Search {
   Search(TechniqueSource& techniques, const TuneOptions& options, Measurer& measurer)
       : techniques_(techniques), options_(options), measurer_(measurer) {}
 
-  /// Says how long it will take at most, from a frame of each pipeline of the first points that the store
-  /// lacks; makes the reference that they need; then the budget begins.
+  /// Renders a frame of each pipeline among the first points that the store lacks, says how long the search
+  /// takes at most, makes the reference, and starts the budget.
   void begin(const std::vector<WantedPoint>& first) {
     const auto most = static_cast<std::size_t>(options_.evaluations);
     std::vector<WantedPoint> missing;
@@ -95,8 +94,7 @@ class Search {
     budget_ = Budget(options_.measure.budgetSeconds);
   }
 
-  /// Measures points that were not looked at yet, as far as there is time; false when the evaluations are
-  /// used up.
+  /// Measures points that were not looked at yet while there is time; false when the evaluations are used up.
   bool look(const std::vector<WantedPoint>& points) {
     std::vector<WantedPoint> fresh;
     for (const WantedPoint& point : points) {
@@ -108,7 +106,7 @@ class Search {
     }
     pending_ = missingOf(fresh);
     finished_ += fresh.size() - pending_.size();
-    // In their order, although the store has some of them before others are measured.
+    // Keeps their order, although the store holds some of them before others are measured.
     std::vector<WantedPoint> left = pending_;
     for (std::vector<WantedPoint> some = begun(left); !some.empty(); some = begun(left))
       measurer_.fetch(some, [&](std::size_t own, std::size_t others) { tell(own, others); });
@@ -123,15 +121,15 @@ class Search {
     return !usedUp_;
   }
 
-  /// Points beside those ahead and beside the best that were not followed yet. The Pareto front itself would
-  /// be too much: it holds whatever cannot be told apart from the best, and on a plateau of the error, where
-  /// times are as good as equal, that would use up the evaluations.
+  /// Neighbours of the points ahead and of the best that were not followed yet. The Pareto front itself would
+  /// be too much: it holds everything that cannot be told from the best, which on a plateau of the error with
+  /// nearly equal times would use up the evaluations.
   std::vector<WantedPoint> neighbours() {
     std::vector<std::vector<WantedPoint>> lists;
     for (const std::size_t index : ahead()) follow(seen_[index], lists);
     if (const std::optional<std::size_t> index = leastOf(tradeOffs(), fitting(), sought()))
       follow(seen_[*index], lists);
-    // In turns, so that few evaluations are shared by all that is on the Pareto front.
+    // In turns, so that all points of the Pareto front share few evaluations.
     std::vector<WantedPoint> result;
     for (std::size_t i = 0; result.size() < total(lists); ++i)
       for (const std::vector<WantedPoint>& list : lists)
@@ -184,7 +182,7 @@ class Search {
     return missing;
   }
 
-  /// Takes those out that are begun next: all, or within a budget a batch of those that would end in time.
+  /// Removes the points that are begun next: all, or within a budget a batch of those that would end in time.
   std::vector<WantedPoint> begun(std::vector<WantedPoint>& points) {
     if (!budget_.isLimited()) return std::exchange(points, {});
     std::vector<WantedPoint> begun, left;
@@ -199,8 +197,8 @@ class Search {
     return begun;
   }
 
-  /// What the rest takes at most, s: points that are known, and further ones, as many as there may be, of the
-  /// pipelines that are followed. Nothing where it is not known what these cost.
+  /// Longest remaining time, s: the known points, and as many further ones of the followed pipelines as there
+  /// may be. Empty where their costs are unknown.
   std::optional<double> secondsLeft() const {
     const double room = budget_.left(), known = measurer_.secondsLeft(pending_, room);
     const auto most = static_cast<std::size_t>(options_.evaluations);
@@ -222,7 +220,8 @@ class Search {
     return std::min(room, known + sum / static_cast<double>(pipelines) * static_cast<double>(further));
   }
 
-  /// How far the search is of the most that it may look at; points that the store had cost no time.
+  /// Tells the progress of the search towards the most points that it may look at. Stored points cost no
+  /// time.
   void tell(std::size_t own, std::size_t others) {
     finished_ += own + others;
     measured_ += own;
@@ -235,7 +234,7 @@ class Search {
     if (!run.point.failure.empty() || run.point.frameMs.repeats == 0) return;
     for (const ComponentError& error : run.point.errors) {
       if (error.output != options_.output) continue;
-      // A component with one reference has only the first, which then answers for both.
+      // A component with one reference has only the first error, which then stands for both.
       const bool only =
           std::count_if(run.point.errors.begin(), run.point.errors.end(),
                         [&](const ComponentError& other) { return other.output == options_.output; }) == 1;
@@ -262,10 +261,10 @@ class Search {
 
   double timeShare() const { return std::max(kSignificantTimeShare, measurer_.floor().frame); }
 
-  /// The number that is to be least; the other one has the limit.
+  /// The quantity to minimise; the other one is limited.
   Measured TradeOff::*sought() const { return options_.frameTimeMs ? &TradeOff::error : &TradeOff::timeMs; }
 
-  /// The points of the front that fit.
+  /// The points of the front within the limit.
   std::vector<std::size_t> fitting() const {
     std::vector<std::size_t> result;
     for (std::size_t i = 0; i < seen_.size(); ++i)
@@ -273,8 +272,8 @@ class Search {
     return result;
   }
 
-  /// Of the points that none beats by value, by time, those whose error differs from that of the last one, or
-  /// of which too little is known to say so.
+  /// Among the points that no other beats in value, sorted by time, those whose error differs from the last
+  /// one's, or may do so within its uncertainty.
   std::vector<std::size_t> ahead() const {
     const std::vector<TradeOff> points = tradeOffs();
     std::vector<std::size_t> result;
@@ -292,7 +291,7 @@ class Search {
     addNeighbours(seen.wanted, lists.back());
   }
 
-  /// Whether a point lies within so many times the limit.
+  /// Whether a point is at most so many times the limit.
   bool withinLimit(const TradeOff& point, double times) const {
     return options_.frameTimeMs ? point.timeMs.value <= times * *options_.frameTimeMs
                                 : point.error.value <= times * *options_.errorLimit;
@@ -313,7 +312,7 @@ class Search {
       }
     }
     for (const PipelineParameter& parameter : pipeline.parameters) {
-      // Parameters set on the command line stay.
+      // Parameters set on the command line are kept.
       if (wanted.loaded->settings.count(parameter.name) != 0) continue;
       const ParameterValue& now = wanted.point.parameters.at(parameter.name);
       for (ParameterValue& value : steps(pipeline, parameter, now)) {
@@ -356,10 +355,9 @@ class Search {
   std::vector<Seen> seen_;
   std::set<std::string> known_;
   bool usedUp_ = false;
-  std::size_t finished_ = 0, measured_ = 0;  ///< points; of them those that were measured here
+  std::size_t finished_ = 0, measured_ = 0;  ///< points, and those of them measured here
   Budget budget_{0.0};
-  /// The first of the search; of those that are looked at now the ones that the store lacked; those for which
-  /// there was no time.
+  /// Points: the first of the search; those looked at now that the store lacked; those without time.
   std::vector<WantedPoint> first_, pending_, leftOut_;
 };
 
@@ -400,7 +398,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   if (options.measure.allRead) options.measure.allRead();
 
   Search search(techniques, options, measurer);
-  // The defaults come first, so that few evaluations still see every technique.
+  // Defaults come first, so that even few evaluations see every technique.
   std::stable_partition(first.begin(), first.end(),
                         [](const WantedPoint& point) { return point.point.isDefault; });
   search.begin(first);

@@ -13,13 +13,13 @@
 namespace lumivox::experiment {
 namespace {
 
-/// A point that keeps its resources while it waits for its next turn.
+/// A point that holds its resources between its turns.
 struct Held {
   Turn* turn;
-  std::optional<TimedPoint> point;  ///< none: it failed meanwhile
+  std::optional<TimedPoint> point;  ///< empty once it failed
 };
 
-/// Takes points from the front as long as they fit beside each other; the first one in any case.
+/// Takes points from the front while they fit beside each other; the first one in any case.
 std::vector<Held> holdTogether(gpu::Device& device, std::deque<Turn*>& waiting) {
   const auto memory = std::make_shared<TransientMemory>(device);
   std::vector<Held> held;
@@ -42,7 +42,8 @@ std::vector<Held> holdTogether(gpu::Device& device, std::deque<Turn*>& waiting) 
   return held;
 }
 
-/// One turn for each. What fails gives its resources back, and is appended to `failed` with the reason.
+/// Gives each point one turn. A failing point releases its resources and is appended to `failed` with the
+/// reason.
 template <class Work>
 void forEach(std::vector<Held>& held, std::vector<Turn*>& failed, const Work& work) {
   for (Held& one : held) {
@@ -60,7 +61,7 @@ void timeInTurns(gpu::Device& device, std::vector<Turn>& turns, int repeats, int
   const MachineLock alone(MachineLock::For::timing);
   std::deque<Turn*> waiting;
   for (Turn& turn : turns) waiting.push_back(&turn);
-  std::vector<Turn*> again;  // they failed beside others
+  std::vector<Turn*> again;  // failed beside others
   const auto time = [&](std::deque<Turn*>& some) {
     std::vector<Held> held = holdTogether(device, some);
     std::vector<Turn*> failed;
@@ -74,7 +75,7 @@ void timeInTurns(gpu::Device& device, std::vector<Turn>& turns, int repeats, int
     });
     for (int frame = 0; frame < nextFrames; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
-    // Their purpose needs no more than a claim does.
+    // Following frames need no more repeats than a claim does.
     const int parts = std::min(nextFrames, kLeastRepeats);
     for (int frame = 0; frame < parts; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });

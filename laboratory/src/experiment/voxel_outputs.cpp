@@ -1,4 +1,4 @@
-// Which voxels the outputs of passes hold.
+// Reads the voxels that passes' outputs hold.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void Reader::operator()(const VoxelList& list) {
   result_.fragments = std::min<std::uint64_t>(count, list.capacity);
   result_.bytes = result_.fragments * list.itemBytes;
   if (result_.fragments == 0) return;
-  // Through a small buffer: a list may be as large as the device's memory.
+  // Reads through a small buffer, since a list may fill the device's memory.
   constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 18;  // items
   std::vector<std::uint32_t> words(list.itemBytes / sizeof(std::uint32_t));
   for (std::uint64_t first = 0; first < result_.fragments; first += kAtOnce) {
@@ -50,7 +50,7 @@ void Reader::operator()(const VoxelList& list) {
   }
 }
 
-/// Whether a value that a texture holds is above 0.
+/// Whether a texel's channel is above 0.
 bool isPositive(gpu::Format format, const std::byte* texel, int channel) {
   switch (format) {
     case gpu::Format::r8:
@@ -61,7 +61,7 @@ bool isPositive(gpu::Format format, const std::byte* texel, int channel) {
     case gpu::Format::rgba16f: {
       std::uint16_t half = 0;
       std::memcpy(&half, texel + static_cast<std::size_t>(channel) * sizeof(half), sizeof(half));
-      constexpr std::uint16_t kInfinity = 0x7c00;  // above it: not a number, or the sign
+      constexpr std::uint16_t kInfinity = 0x7c00;  // above it: NaN, or the sign bit
       return half > 0 && half <= kInfinity;
     }
     case gpu::Format::r32f:
@@ -76,7 +76,7 @@ bool isPositive(gpu::Format format, const std::byte* texel, int channel) {
   }
 }
 
-/// Voxels with a value above 0 in one of the channels; read through a small buffer.
+/// Collects voxels with a value above 0 in some channel, through a small buffer.
 void Reader::operator()(const VoxelTexels& source) {
   for (const VoxelTexels::Channel& channel : source.channels)
     read(*source.textures.at(static_cast<std::size_t>(channel.texture)), source.level, channel.component);
@@ -149,7 +149,7 @@ std::optional<OccupiedVoxels> occupiedVoxels(const OutBase& output) {
 std::uint64_t heldBytes(const OutBase& output) {
   const PortContents contents = output.contents();
   std::uint64_t bytes = 0;
-  std::set<const void*> counted;  // a resource may have two names
+  std::set<const void*> counted;  // a resource may appear under two names
   for (const PortContents::Resource& resource : contents.resources()) {
     const void* which =
         resource.texture ? static_cast<const void*>(resource.texture.get()) : resource.buffer.get();
@@ -162,7 +162,7 @@ std::uint64_t heldBytes(const OutBase& output) {
 std::optional<std::uint64_t> opaqueVoxels(const OutBase& output) {
   const PortContents contents = output.contents();
   for (const PortContents::Field& field : contents.fields()) {
-    // Of voxels with faces each axis has its own.
+    // Voxels with faces have one such field per axis.
     if ((field.name != "opacity" && field.name != "opacity_along") || field.level != 0) continue;
     GridPlacement grid;
     grid.resolution = field.box.resolution;

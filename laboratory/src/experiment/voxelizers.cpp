@@ -1,4 +1,4 @@
-// Measuring voxelizers: one warm-up frame gives the voxels, the frames after it the times.
+// Measures voxelizers: one warm-up frame gives the voxels, the following frames the times.
 #include "lumivox/experiment/voxelizers.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace lumivox {
 using namespace experiment;
 
 namespace {
-constexpr const char* kResolution = "resolution";  // the parameter that a voxelizer's text must have
+constexpr const char* kResolution = "resolution";  // parameter that every voxelizer's text must declare
 }
 
 std::optional<std::filesystem::path> committedVoxelizers(const std::filesystem::path& start) {
@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> pipelineFiles(const VoxelizerOptions& options
   return files;
 }
 
-/// Whether a property of some pass names the output, or the pass alone.
+/// Whether some pass reads this output, by its name or by the pass alone.
 bool isRead(const Pipeline& pipeline, const std::string& pass, const std::string& port) {
   for (const PassText& other : pipeline.passes)
     for (const dsl::Item& item : other.block->items) {
@@ -71,22 +71,21 @@ bool isRead(const Pipeline& pipeline, const std::string& pass, const std::string
   return false;
 }
 
-/// One output of one voxelizer that is being measured. Outputs of the same voxelizer at the same point share
-/// an executor.
+/// An output of a voxelizer under measurement. Outputs of one voxelizer at one point share an executor.
 struct Candidate {
   VoxelizerRecord record;
   std::shared_ptr<PipelineExecutor> executor;
   std::string pass, port;
   std::vector<double> frameMs;
 
-  /// A frame in which this output is made from nothing.
+  /// Renders a frame that makes this output from nothing.
   FrameResult render(double time, bool shared) const {
     if (shared) executor->keepOnly(pass, port);
     executor->invalidate();
     return executor->render(time, 0, PipelineExecutor::Images::no);
   }
 
-  /// Whether its frames are long and were timed often enough for that.
+  /// Whether its frames were timed often enough, given how long they are.
   bool hasEnough(const VoxelizerOptions& options) const {
     const auto timed = static_cast<int>(frameMs.size());
     return timed >= std::max(1, options.repeatsOfLongFrames) &&
@@ -96,7 +95,7 @@ struct Candidate {
 
 class Measurement {
  public:
-  /// run() will be called for each resolution and then for each subdivision.
+  /// run() is then called for each resolution and each subdivision.
   Measurement(gpu::Device& device, TechniqueSource& techniques, const VoxelizerOptions& options,
               const std::vector<Pipeline>& pipelines)
       : device_(device), techniques_(techniques), options_(options) {
@@ -107,7 +106,7 @@ class Measurement {
     total_ = shown_.size() * weights_.size() * (1 + static_cast<std::size_t>(options.repeats));
   }
 
-  /// All voxelizers on one scene at one resolution, appended to `records`.
+  /// Measures all voxelizers on one scene at one resolution and appends to `records`.
   void run(const Scene& scene, const std::vector<Pipeline>& pipelines, int resolution, int subdivisions,
            std::vector<VoxelizerRecord>& records) {
     std::vector<Candidate> candidates;
@@ -131,7 +130,7 @@ class Measurement {
       ++judged_;
       ++pipelinesHeld_;
       advance(1);
-      // Those that alternate are all held at once.
+      // Those that take turns are all held at once.
       constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
       std::uint64_t held = 0;
       for (const Candidate& candidate : candidates) held += candidate.record.allocatedBytes;
@@ -148,15 +147,15 @@ class Measurement {
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  /// The works of a pipeline at one resolution; a frame of each of its outputs is what its times consist of.
+  /// Kinds of work of a pipeline at one resolution. Its times consist of frames of each of its outputs.
   static constexpr const char *kJudgedWork = "judged", *kFrameWork = "frame", *kTimesWork = "times";
 
-  /// Costs grow with the resolution as areas or as volumes, and with the triangles or not: what lies between.
+  /// Costs grow like areas or volumes with the resolution, and with the triangles or not; this lies between.
   static double weightOf(int resolution, int subdivisions) {
     return std::pow(resolution, 2.5) * std::pow(2.0, subdivisions);
   }
 
-  /// What the rest takes, s. `repeats`: those of the pipelines that are held that are over.
+  /// Expected remaining time, s. `repeats`: finished repeats of the pipelines that are held.
   double secondsLeft(int repeats) const {
     double left = 0.0;
     for (std::size_t run = run_; run < weights_.size(); ++run) {
@@ -164,7 +163,7 @@ class Measurement {
       if (run > run_) left += referenceRate_ * weight;
       for (std::size_t i = 0; i < shown_.size(); ++i) {
         const bool isJudged = run == run_ && i < judged_;
-        if (isJudged && i + pipelinesHeld_ < judged_) continue;  // timed as well
+        if (isJudged && i + pipelinesHeld_ < judged_) continue;  // already timed
         if (!isJudged) left += costs_.expected(shown_[i], kJudgedWork, weight).value_or(0.0);
         const double frames = options_.repeats * costs_.expected(shown_[i], kFrameWork, weight).value_or(0.0);
         const double times = costs_.expected(shown_[i], kTimesWork, weight).value_or(frames);
@@ -174,10 +173,10 @@ class Measurement {
     return left;
   }
 
-  /// The repeats of these, in turns; they are records then.
+  /// Times these in turns and turns them into records.
   void time(std::vector<Candidate>& candidates, std::vector<VoxelizerRecord>& records) {
-    // An executor that makes now this and now that output keeps the memory of all of them meanwhile, which
-    // one more frame of each takes: no timed frame waits for memory.
+    // An executor that alternates between outputs keeps the memory of all of them. One more frame of each
+    // allocates it, so that no timed frame waits for memory.
     for (const Candidate& candidate : candidates) {
       if (!candidate.executor || candidate.executor.use_count() == 1) continue;
       candidate.executor->freeUnused(false);
@@ -210,7 +209,7 @@ class Measurement {
     if (options_.progress && steps > 0) options_.progress(done_, total_, secondsLeft(repeats));
   }
 
-  /// The default point and those of the sweeps, at this resolution.
+  /// The default point and the points of sweeps at this resolution.
   std::vector<PlannedPoint> points(const Pipeline& pipeline, int resolution) const {
     std::vector<std::string> settings = settingsFor(pipeline, options_.settings);
     settings.push_back(fmt::format("{}={}", kResolution, resolution));
@@ -227,7 +226,7 @@ class Measurement {
     return render;
   }
 
-  /// The candidates of one pipeline: one for each output with voxels that no other pass reads.
+  /// Adds the candidates of a pipeline: its outputs with voxels that no other pass reads.
   void add(const Scene& scene, const Pipeline& pipeline, const VoxelizerRecord& blank,
            std::vector<Candidate>& candidates) {
     const auto skip = [&](const std::string& why) {
@@ -253,7 +252,7 @@ class Measurement {
     }
   }
 
-  /// False when no output holds voxels.
+  /// False where no output holds voxels.
   bool addPoint(const Scene& scene, const Pipeline& pipeline, const VoxelizerRecord& blank,
                 std::vector<Candidate>& candidates) {
     const RenderOptions render = renderOptions(blank.parameters);
@@ -319,14 +318,14 @@ class Measurement {
   const VoxelizerOptions& options_;
   std::optional<VoxelReferences> references_;  ///< of the scene and time at hand
   std::size_t done_ = 0, total_ = 0;           ///< steps
-  /// Calls of run() that are over; of the one at hand: pipelines that are judged, and those of them whose
+  /// Finished calls of run(); in the current one, the pipelines that are judged, and those of them whose
   /// repeats are still to come.
   std::size_t run_ = 0, judged_ = 0, pipelinesHeld_ = 0;
   std::vector<std::string> shown_;
-  std::vector<double> weights_;  ///< of each run()
+  std::vector<double> weights_;  ///< one for each run()
   Costs costs_;
-  /// Of the run() at hand, the exact overlap, which is made once for all pipelines of one grid; the most that
-  /// it took for a weight of 1; and of the pipeline at hand a frame of each output.
+  /// Times in the current run(): the exact overlap, which is made once for all pipelines of one grid; the
+  /// most that it took for a weight of 1; and a frame of each output of the current pipeline.
   double referenceSeconds_ = 0.0, referenceRate_ = 0.0, frameSeconds_ = 0.0;
 };
 
@@ -353,7 +352,7 @@ std::vector<VoxelizerRecord> measureVoxelizers(gpu::Device& device, TechniqueSou
   for (const std::string& setting : options.settings)
     if (std::none_of(pipelines.begin(), pipelines.end(),
                      [&](const Pipeline& pipeline) { return !settingsFor(pipeline, {setting}).empty(); }))
-      pipelines.front().settings({setting});  // throws, and says what there is
+      pipelines.front().settings({setting});  // throws with the known names
   std::vector<VoxelizerRecord> records;
   Measurement measurement(device, techniques, options, pipelines);
   for (const int resolution : options.resolutions) measurement.run(scene, pipelines, resolution, 0, records);
@@ -388,7 +387,7 @@ Scene subdivided(const Scene& scene) {
           finer.normals.push_back(glm::length(normal) > 0.0f ? glm::normalize(normal) : scene.normals[ia]);
           finer.texcoords.push_back(0.5f * (scene.texcoords[ia] + scene.texcoords[ib]));
         };
-        // Corners, then the middle of the edge opposite to each.
+        // The corners, then the middle of the edge opposite each.
         add(0, 0), add(1, 1), add(2, 2), add(1, 2), add(2, 0), add(0, 1);
         for (const std::uint32_t k : {0u, 5u, 4u, 5u, 1u, 3u, 4u, 3u, 2u, 3u, 4u, 5u})
           finer.indices.push_back(base + k);
