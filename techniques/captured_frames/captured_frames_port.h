@@ -5,7 +5,7 @@
 
 namespace lumivox::captured_frames {
 
-/// Frames of a depth camera on the device, a layer a frame, the newest first.
+/// Frames of a depth camera on the device, one per layer, the newest first.
 struct CapturedFrames {
   gpu::TextureRef colour, depth, rays;
   gpu::BufferRef poses;

@@ -1,4 +1,4 @@
-// Virtual content before the captured picture.
+// Composites virtual content over the captured picture.
 
 #include "lumivox/toolkit/bindings.h"
 #include "passes.h"
@@ -55,7 +55,7 @@ class CompositePass : public Pass {
     radiance = result;
   }
 
-  /// Only from the place of the depth camera is the picture what lies behind the virtual content.
+  /// The picture shows what lies behind virtual content only from the depth camera's place.
   static bool isSameEye(const CameraView& view, const CaptureState& state) {
     constexpr float kSame = 1e-4f;
     const float turned =

@@ -1,5 +1,5 @@
-// Every pixel of the frames as a small light on a surface (Lensing & Broll 2013, Sec. 5): a map with a layer
-// a frame.
+// Turns every pixel of the frames into a small light on a surface (Lensing & Broll 2013, Sec. 5): a map with
+// one layer per frame.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ class LightsPass : public Pass {
     const gpu::BufferRef counts = frame.inspects()
                                       ? frame.emptyElements(code::lights::counts, kCounts, "counts of pixels")
                                       : frame.elements(code::lights::counts, kCounts, "no counts");
-    // The newest first: what it holds, older ones leave out.
+    // The newest comes first: older frames leave out what it holds.
     for (int layer = 0; layer < frames->count; ++layer) {
       frame.dispatch(frame.program(code::lights::Variant{.counted = frame.inspects()}),
                      {code::lights::parameters({.layer = layer,
@@ -116,7 +116,7 @@ class LightsPass : public Pass {
     return result;
   }
 
-  /// The depth cameras, in the place of lights: without power, seeing what shines.
+  /// The depth cameras take the place of lights, without power.
   gpu::BufferRef eyes(PassContext& frame) const {
     std::vector<LightSampleData> eyes;
     for (const CaptureState& state : frames->states) {

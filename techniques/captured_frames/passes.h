@@ -1,4 +1,4 @@
-// The passes of captured frames, one source each.
+// The technique's passes, one source file each.
 #pragma once
 
 #include "captured_frames_port.h"

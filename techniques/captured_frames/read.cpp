@@ -1,4 +1,4 @@
-// Frames of a capture, decoded by the host and brought to the device.
+// Decodes frames of a capture on the host and uploads them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -74,7 +74,7 @@ class ReadPass : public Pass {
     const auto& captures = frame.sceneDescription().captures;
     const auto index = static_cast<std::size_t>(static_cast<int>(number));
     if (index >= captures.size()) {
-      // With everything kept, the pass runs in scenes without a capture too.
+      // Where everything is kept, the pass also runs in scenes without a capture.
       if (!captures.empty())
         throw Error(fmt::format("capture {} of a scene that has {}; expected one from 0 to {}", index,
                                 captures.size(), captures.size() - 1));

@@ -1,5 +1,5 @@
-// Direct light by rasterisation, the common ground of all techniques and the template for new ones: what the
-// camera sees, shadow maps for every kind of light, shading, and the sum of the components.
+// Direct light by rasterisation, the common ground of all techniques and the template for new ones: g-buffer,
+// shadow maps for every kind of light, shading, and the sum of the components.
 #include <algorithm>
 
 #include "direct_lighting_shaders.h"

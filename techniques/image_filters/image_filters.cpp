@@ -1,5 +1,5 @@
-// Filters of images that were gathered for some of the pixels or from few samples: joint bilateral filters
-// guided by the g-buffer (Kopf, Cohen, Lischinski & Uyttendaele 2007; Pham & van Vliet 2005).
+// Filters for images gathered at some of the pixels or from few samples: joint bilateral filters guided by
+// the g-buffer (Kopf, Cohen, Lischinski & Uyttendaele 2007; Pham & van Vliet 2005).
 #include <fmt/format.h>
 
 #include "image_filters_shaders.h"
@@ -60,7 +60,7 @@ class SmoothPass : public Pass {
     return &input != &open || occlusion.wanted();
   }
 
-  /// Pixels from one sample to the next.
+  /// Distance from one sample to the next in pixels.
   int everyOf(PassContext& frame, const In<Image>& samples, const char* name) const {
     const glm::ivec3 all = pixels(frame);
     const gpu::TextureDescription& size = samples->texture->description();

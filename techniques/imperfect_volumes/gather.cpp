@@ -1,4 +1,4 @@
-// Light and openness at the visible surfaces: Mavridis & Papaioannou 2011, Sec. 3.4 and 3.5.
+// Looks up light and openness at the visible surfaces: Mavridis & Papaioannou 2011, Sec. 3.4 and 3.5.
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
@@ -65,7 +65,7 @@ class GatherPass : public Pass {
     }
   }
 
-  /// Where everything is kept, outputs are asked for that nobody connected anything for.
+  /// Where everything is kept, outputs run even without their inputs.
   static bool isThere(PassContext& frame, const In<ShGrid>& light, const char* output) {
     if (!light.present() && !frame.keepsEverything())
       throw Error(fmt::format("'{}' is made of '{}'; expected it to be connected", output, light.name()));
@@ -81,7 +81,7 @@ class GatherPass : public Pass {
       throw Error("'blend free' reads 'attributes'; expected it to be connected");
     if (free) requireSameGrid("opacity", opacity->grid, input, volume.grid);
     if (free) requireSameGrid("attributes", attributes->grid, input, volume.grid);
-    // Something must be bound where nothing is read.
+    // A texture must be bound even where none is read.
     const gpu::TextureRef &around = free ? opacity->opacity : volume.coefficients[0],
                           &normals = free ? attributes->normal : volume.coefficients[0];
     frame.dispatch(

@@ -1,4 +1,4 @@
-// Direct light into the volume: Mavridis & Papaioannou 2011, Sec. 3.1 and 3.2.
+// Injects direct light into the volume: Mavridis & Papaioannou 2011, Sec. 3.1 and 3.2.
 #include "lumivox/toolkit/light_bounds.h"
 #include "lumivox/toolkit/voxel_slots.h"
 #include "volume.h"
@@ -28,15 +28,15 @@ class InjectPass : public Pass {
   Out<ShGrid> reflected{this, "reflected", Contributes::nothing, Needs::anyLight,
                         "direct light that the surfaces of each voxel reflect"};
 
-  std::uint64_t room_ = 0;  ///< slots that there is room for: a guess, or what earlier frames needed
+  std::uint64_t room_ = 0;  ///< number of slots: a guess, or what earlier frames needed
 
-  // What no voxel can reflect follows from the lights and what emits.
+  // The bound of what voxels reflect follows from lights and emitters.
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
 
   void run(PassContext& frame) override {
     const GridPlacement& grid = fragments->grid;
     const bool half = precision == Precision::half;
-    // A voxel cannot say anything of what lies nearer than half of it.
+    // A voxel does not resolve anything nearer than half its side.
     const float most = largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * grid.voxelSize);
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;

@@ -1,5 +1,5 @@
-// Rays from the middle of every voxel through the volume: light from all sides (Mavridis & Papaioannou 2011,
-// Sec. 3.3), over several bounces, and openness (Sec. 3.5).
+// Sends rays from the middle of every voxel through the volume. They gather light from all sides (Mavridis &
+// Papaioannou 2011, Sec. 3.3) over several bounces, or openness (Sec. 3.5).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +21,11 @@ using namespace shaders::imperfect_volumes;
 namespace {
 
 constexpr int kTogether = 8;  // invocations that share the rays of a voxel, as in march.comp
-// sqrt(3) / 2, the distance of a voxel's corners, and a little: rounding leads no ray back into its voxel.
+// A little more than sqrt(3) / 2, the distance of a voxel's corners, so that rounding leads no ray back into
+// its voxel.
 constexpr float kPublishedGuard = 0.8660255f;
 
-/// What `march` and `occlude` share.
+/// Common parts of `march` and `occlude`.
 class Marching : public Pass {
  protected:
   enum class Reading { nearest, linear };
@@ -133,11 +134,11 @@ class Marching : public Pass {
             .bitRule = march::Variant::bitRuleHierarchy};
   }
 
-  /// All rays of all voxels, in as many dispatches as keep the loops within what drivers run.
+  /// Sends all rays of all voxels, in enough dispatches to keep loops within what drivers run.
   void sendRays(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
                 march::Rays parameters, const Begins& from) const {
     const int pairs = (rays + 1) / 2, rounds = (pairs + kTogether - 1) / kTogether;
-    // Light is seen from one end of the volume to the other; openness within its reach.
+    // Light travels from one end of the volume to the other; openness has a reach.
     const float way = std::min(parameters.reach, glm::length(glm::vec3(grid().resolution)));
     parameters.seed = seedWords(frame);
     parameters.guard = guard;
@@ -162,7 +163,7 @@ class Marching : public Pass {
     });
   }
 
-  /// In bounds of floats: light comes from all of the volume.
+  /// Light comes from all of the volume, so the reach has no end.
   static constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 };
 
@@ -242,16 +243,16 @@ class MarchPass : public Marching {
     return volumes;
   }
 
-  /// One bounce: what arrives of what the voxels send.
+  /// One bounce: the light that arrives at voxels from what they send.
   std::array<gpu::TextureRef, 3> arriving(PassContext& frame, const ShGrid::Level& sent, float unit,
                                           const Begins& from, int bounce) const {
     auto volumes = emptyVolumes(frame, "radiance that arrives");
     march::Constants choices = constants();
     choices.harmonics = sendsBands();
     const shader::BoundProgram& program = frame.program(variant(from, march::Variant::ofLight), choices);
-    // Something must be bound where no normals are read.
+    // A texture must be bound even where no normals are read.
     const gpu::TextureRef& normals = readsAttributes() ? attributes->normal : sent.coefficients[0];
-    // The sky was seen with the first bounce; a buffer that replaces another sees it again.
+    // The first bounce has seen the sky. A buffer that replaces another one sees it again.
     const glm::vec3 sky =
         bounce == 0 || feed == Feed::printed ? frame.sceneDescription().environment : glm::vec3(0.0f);
     sendRays(frame, program,

@@ -1,4 +1,4 @@
-// Common parts of all stages: the volume, what a surface point reads of it, and the voxels that are read.
+// Common parts of all stages: the volume and its look-up at a surface point.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ namespace lumivox::imperfect_volumes {
 /// Block Volume of volume.glsl. `occupied`: coverage above which a voxel is occupied.
 gpu::ResourceBinding volumeBinding(const GridPlacement& grid, float occupied = 0.0f);
 
-/// Three volumes of coefficients, rgba32f unless another format is said. Error with the bytes, and the
-/// largest size that fits, where they do not fit.
+/// Three volumes of coefficients, rgba32f by default. Where they do not fit, an Error names the bytes and the
+/// largest size that fits.
 std::array<gpu::TextureRef, 3> coefficientVolumes(PassContext& frame, const glm::ivec3& resolution,
                                                   const char* label,
                                                   gpu::Format format = gpu::Format::rgba32f);
@@ -24,21 +24,21 @@ std::array<gpu::TextureRef, 3> coefficientVolumes(PassContext& frame, const glm:
 /// The three volumes under the names redImage, greenImage and blueImage.
 shader::BindingSet images(const std::array<gpu::TextureRef, 3>& volumes);
 
-/// A volume of radiance, and the value that the number 1 in it stands for.
+/// A volume of radiance with its unit, the value of a stored 1.
 struct RadianceVolume {
   const ShGrid::Level& level;
   float unit;
 };
-/// The volume of an input. Error for another quantity, several levels, or where only the voxels of another
-/// reading (ShGrid::readFor) hold values than of `voxels`; empty: all of them are read.
+/// The volume of an input. Error for another quantity, for several levels, or where the voxels that hold
+/// values (ShGrid::readFor) are not those of `voxels`, which is empty where all are read.
 RadianceVolume volumeOf(const In<ShGrid>& light, const std::string& voxels = {});
 
 /// Error where a grid is not that of the others.
 void requireSameGrid(const char* input, const GridPlacement& grid, const char* other,
                      const GridPlacement& otherGrid);
 
-/// What a surface point reads around it (Sec. 3.4): members of a pass. March and gather must agree in it
-/// wherever not all of the volume is filled, which they find by the words.
+/// The voxels that a surface point reads around it (Sec. 3.4), as members of a pass. March and gather compare
+/// inWords(): they must agree wherever not all of the volume is filled.
 class Neighbours {
  public:
   explicit Neighbours(Pass* pass);
@@ -47,7 +47,7 @@ class Neighbours {
   gpu::ResourceBinding binding() const;
   /// Whether only free neighbours count, where there are any.
   bool onlyFree() const { return blend_ == Blend::free; }
-  /// Generated Constants with these settings in them.
+  /// The generated Constants with these settings.
   template <class Constants>
   Constants in(Constants constants) const {
     constants.voxels = static_cast<int>(Voxels(voxels_));
@@ -66,7 +66,7 @@ class Neighbours {
   Param<Blend> blend_;
 };
 
-/// Each registers the passes of its file.
+/// Each function registers the passes of its file.
 void addInject(TechniqueRegistry& registry);
 void addMarch(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);

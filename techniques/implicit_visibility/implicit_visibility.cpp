@@ -1,5 +1,5 @@
-// Light between surface elements that see each other by the nearest link in every bin of directions (Dong et
-// al. 2007).
+// Light between surface elements; an element sees the nearest link in every bin of directions (Dong et al.
+// 2007).
 #include "passes.h"
 
 LUMIVOX_TECHNIQUE(registry) {

@@ -1,4 +1,4 @@
-// Memory is asked for before it is taken.
+// Checks memory before it is allocated.
 #pragma once
 
 #include <cstdint>

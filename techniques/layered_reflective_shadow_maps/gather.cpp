@@ -1,4 +1,4 @@
-// Cones through opacities, lit by layers of what the lights see: thesis Gomes 2015, Sec. 3.3, Fig. 44.
+// Traces cones through opacities, lit by layers of the lights' views: thesis Gomes 2015, Sec. 3.3, Fig. 44.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,19 +73,19 @@ class GatherPass : public Pass {
   float diagonal() const {
     return glm::length(glm::vec3(opacity->grid.resolution)) * opacity->grid.voxelSize;
   }
-  /// What one dispatch asks at a step of a cone.
+  /// Layers that one dispatch reads at a step of a cone.
   struct Asked {
     int lights, layers;  ///< of each view
   };
-  /// A bound for the turns of all loops of one cone: steps of the finest voxel, as many that are read once
-  /// more by finer voxels, and what each step asks.
+  /// Bounds the turns of all loops of one cone: steps of the finest voxel, as many that finer voxels read
+  /// once more, and the layers read at each step.
   std::int64_t turnsOfCone(const Asked& asked) const {
     const float length = reach > 0.0f ? std::min<float>(reach, diagonal()) : diagonal();
     const auto steps = static_cast<std::int64_t>(std::ceil(length / (step * opacity->grid.voxelSize)));
-    constexpr std::int64_t kFirst = 24;  // that are read more finely before the first step
+    constexpr std::int64_t kFirst = 24;  // finer reads before the first step
     return (2 * steps + kFirst) * (1 + asked.lights * (1 + asked.layers));
   }
-  /// As many lights as one dispatch may ask, with all layers or, of one light, with as many as it may.
+  /// As many lights as one dispatch may read, with all layers, or one light with as many layers as it may.
   Asked askedAtOnce() const {
     Asked asked{std::max(lightCount(), 1), layers.present() ? std::max(layers->mostOfView, 1) : 1};
     while (asked.lights > 1 && turnsOfCone(asked) > kLoopLimit) asked.lights = (asked.lights + 1) / 2;
@@ -141,7 +141,7 @@ class GatherPass : public Pass {
     return result;
   }
 
-  /// All cones of a lobe, in as many dispatches as keep the loops within what drivers run.
+  /// Traces all cones of a lobe, in enough dispatches to keep loops within what drivers run.
   void gathered(PassContext& frame, int lobe, int count, const gpu::TextureRef& image) const {
     const int lights = lightCount(), ofView = layers.present() ? layers->mostOfView : 0;
     const Asked asked = askedAtOnce();

@@ -1,4 +1,4 @@
-// What the lights see, parted into layers that can be filtered: a kind of port of this technique's own.
+// The lights' views in layers that can be filtered: a kind of port of this technique's own.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace lumivox {
 
-/// The views of a reflective shadow map in layers, by depth and by normal, one mip per halving (thesis Gomes
-/// 2015, Sec. 3.3). A texel of the map belongs to one layer of its view; in the others it is 0, so that a
-/// filtered texel holds means times the share of its area that the layer covers, and the layers of a view
-/// add up to the map. Only layers with a texel are stored.
+/// The views of a reflective shadow map in layers by depth and by normal, one mip per halving (thesis Gomes
+/// 2015, Sec. 3.3). A texel of the map belongs to one layer of its view and is 0 in the others. A filtered
+/// texel thus holds means times the share of its area that the layer covers, and the layers of a view add up
+/// to the map. Empty layers are not stored.
 struct LayeredReflectiveShadowMap {
   /// Mirror of Layer in shaders/layered_reflective_shadow_maps/layer.glsl (std430).
   struct Layer {

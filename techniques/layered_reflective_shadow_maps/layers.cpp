@@ -1,4 +1,4 @@
-// Views of the lights in layers, so that each can be filtered: thesis Gomes 2015, Sec. 3.3.
+// Splits the views of the lights into layers, so that each can be filtered: thesis Gomes 2015, Sec. 3.3.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -20,10 +20,10 @@ namespace {
 
 using namespace shaders::layered_reflective_shadow_maps;
 
-/// Half floats end at 65504; filtering adds nothing to the largest.
+/// Half floats end at 65504; filtering never exceeds the largest value.
 constexpr float kLargestHalf = 32768.0f;
 
-/// Of a texture: what OpenGL promises (4.5, table 23.53).
+/// Layers of a texture that OpenGL guarantees (4.5, table 23.53).
 constexpr int kMostLayers = 2048;
 
 class LayersPass : public Pass {
@@ -58,7 +58,7 @@ class LayersPass : public Pass {
   float unitOf(PassContext& frame) const {
     if (precision == Precision::float_) return 1.0f;
     if (unit > 0.0f) return unit;
-    // What a light is nearer to than a share of the scene is as bright as from there on.
+    // Surfaces nearer to a light than this share of the scene are as bright as at that distance.
     constexpr float kNearest = 1.0f / 128.0f;
     const Bounds& bounds = frame.snapshot().bounds;
     const float nearest = bounds.empty ? 1.0f : kNearest * glm::length(bounds.high - bounds.low);
@@ -66,10 +66,10 @@ class LayersPass : public Pass {
            kLargestHalf;
   }
 
-  /// The largest number that radiance is kept as.
+  /// The largest number that radiance is stored as.
   float mostOf() const { return precision == Precision::half ? 65504.0f : std::numeric_limits<float>::max(); }
 
-  /// What all programs read of the map.
+  /// The bindings of the map that all programs read.
   shader::BindingSet mapOf(float ofUnit) const {
     return {ReflectiveShadowMapBinding(*map),
             shader::UniformSlot<layers_fill::Partition>{"Partition"}({.depthLayers = depthLayers,
@@ -79,7 +79,7 @@ class LayersPass : public Pass {
                                                                       .most = mostOf()})};
   }
 
-  /// Where the intervals of each view begin and end.
+  /// Bounds of the intervals of each view.
   gpu::BufferRef boundsOf(PassContext& frame, const shader::BindingSet& seen,
                           const glm::ivec3& texels) const {
     const auto views = static_cast<std::uint64_t>(map->layerCount);
@@ -115,7 +115,7 @@ class LayersPass : public Pass {
             gpu::fullLevelCount(texels.width, texels.height)};
   }
 
-  /// Of so many layers, in parts that a device with small buffers has room for too: they become textures.
+  /// Bytes of so many layers, in parts that also fit into small buffers, since they become textures.
   std::vector<std::uint64_t> bytesOf(int count, gpu::Format colours) const {
     constexpr std::uint64_t kPart = std::uint64_t{64} << 20;
     std::uint64_t bytes =

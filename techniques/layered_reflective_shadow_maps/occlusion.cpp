@@ -1,4 +1,4 @@
-// Opacities that cones read: thesis Gomes 2015, Sec. 3.3, "the occlusion textures are mipmapped".
+// Makes the opacities that cones read: thesis Gomes 2015, Sec. 3.3, "the occlusion textures are mipmapped".
 #include <algorithm>
 
 #include "layered_reflective_shadow_maps_shaders.h"
@@ -10,8 +10,8 @@ namespace {
 
 namespace occlusion = shaders::layered_reflective_shadow_maps::occlusion;
 
-/// The size of a grid with voxels added at its high ends so that halving leaves no odd number above the few
-/// voxels of the coarsest levels: voxels that share children make walls thicker from level to level.
+/// The size of a grid with voxels added at its high ends, so that halving leaves no odd number above the few
+/// voxels of the coarsest levels. Voxels that share children would make walls thicker from level to level.
 glm::ivec3 evenlyHalved(const glm::ivec3& size) {
   constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
   int multiple = 1;

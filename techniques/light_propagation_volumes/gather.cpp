@@ -1,5 +1,4 @@
-// Light that surfaces receive from the grids, and that they pass on to reflections: thesis Gomes 2015,
-// Sec. 4.3.4 and 4.3.5.
+// Gathers light from the grids at surfaces and along reflected rays: thesis Gomes 2015, Sec. 4.3.4 and 4.3.5.
 #include <fmt/format.h>
 
 #include "nested_grids.h"
@@ -11,8 +10,8 @@ using namespace shaders::light_propagation_volumes;
 namespace {
 
 constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Listing 4.36
-// Listing 4.36: the finer of two grids of 32 cells counts alone up to 12 of them from the eye, and not at all
-// from 16 on.
+// Listing 4.36: of two grids of 32 cells the finer one counts alone up to 12 cells from the eye and not at
+// all from 16 on.
 constexpr float kInnerReach = 12.0f / 32.0f, kOuterReach = 16.0f / 32.0f;
 
 float longestSide(const GridPlacement& grid) {
@@ -89,7 +88,7 @@ class GatherPass : public Pass {
     if (frame.inspects()) tellShare(frame, *diffuse->texture, *clipped->texture);
   }
 
-  /// How much two bands made negative, of all that reaches the image.
+  /// Reports the share of light that two bands made negative.
   static void tellShare(PassContext& frame, const gpu::Texture& light, const gpu::Texture& cut) {
     const auto sum = [](const gpu::Texture& texture) {
       const std::vector<float> values = texture.downloadFloats();
@@ -185,7 +184,7 @@ class TracePass : public Pass {
   Reads readsFrom() const override { return Reads::camera; }
 
   void run(PassContext& frame) override {
-    // The texture may be larger than the grid: rows of whole mips.
+    // The texture may be larger than the grid, in whole mips.
     const gpu::TextureDescription& texture = grid->radiance->description();
     const GridPlacement place{
         grid->grid.low, grid->grid.voxelSize, {texture.width, texture.height, texture.depth}};

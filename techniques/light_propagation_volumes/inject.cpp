@@ -1,6 +1,6 @@
-// Virtual point lights: from a reflective shadow map (Kaplanyan & Dachsbacher 2010, Sec. 4.1) or from
-// illuminated voxels (Doghramachi 2013; thesis Gomes 2015, Sec. 4.3.1, 4.3.2); and the faces that surfaces
-// close.
+// Injects virtual point lights from a reflective shadow map (Kaplanyan & Dachsbacher 2010, Sec. 4.1) or from
+// illuminated voxels (Doghramachi 2013; thesis Gomes 2015, Sec. 4.3.1, 4.3.2), and finds the faces that
+// surfaces occlude.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver
                                        // can address
 
-/// Bricks of 4 x 4 x 4 cells that hold anything: marked by passes over surfaces and lights, walked by those
-/// over cells. Their number stays on the device (bricks.glsl).
+/// Occupied bricks of 4 x 4 x 4 cells. Passes over surfaces and lights mark them; passes over cells walk
+/// them. Their number stays on the device (bricks.glsl).
 struct BrickList {
   gpu::BufferRef flags, list;
   BrickList(PassContext& frame, const glm::ivec3& cells) {
@@ -35,7 +35,7 @@ struct BrickList {
   }
 };
 
-/// An invocation for each cell of the listed bricks, and a barrier.
+/// Dispatches an invocation for each cell of the listed bricks, then a barrier.
 void walkBricks(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                 const BrickList& bricks) {
   frame.dispatchIndirect(program, {bindings, bricks.bindings()}, *bricks.list);
@@ -46,7 +46,7 @@ class Inject : public Pass {
 
  public:
   Reads readsFrom() const override { return Reads::partOfCamera | Reads::geometry | Reads::lights; }
-  /// The grids move with the camera, but by whole cells and not out of the scene.
+  /// The grids move with the camera by whole cells, and stay in the scene.
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     std::vector<float> places;
     for (const GridPlacement& grid : placeGrids(snapshot, levels, resolution, extent)) {
@@ -72,9 +72,9 @@ class Inject : public Pass {
   }
 
  protected:
-  /// The faces that surfaces occlude; without them only the packed voxels occlude.
+  /// Whether the faces that surfaces occlude are found; without them only packed voxels occlude.
   virtual bool findsFaces() const { return true; }
-  /// Virtual lights to the coefficients of the cells.
+  /// Turns virtual lights into the coefficients of cells.
   virtual void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) {
     const GridPlacement& grid = level.grid;
     const gpu::BufferRef sums =
@@ -82,14 +82,14 @@ class Inject : public Pass {
     const BrickList lit(frame, grid.resolution);
     addLights(frame, grid, surfaces, sums, lit);
     for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
-    // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
+    // A clamped cosine has the mean cosine 2/3; 0 stands for the default lobe's.
     const float meanCosine = lobe == Lobe::cosine ? 2.0f / 3.0f : 0.0f;
     walkBricks(frame, frame.program(resolve_lights::kProgram),
                {cellsBinding(grid), resolve_lights::parameters({meanCosine}), resolve_lights::sums(sums),
                 images(level.coefficients)},
                lit);
   }
-  /// Adds virtual lights to the sums of the cells, marks their bricks, and a barrier.
+  /// Adds virtual lights to the sums of the cells and marks their bricks; a barrier follows.
   virtual void addLights(PassContext& frame, const GridPlacement& grid, const OccludedFaces::Level& surfaces,
                          const gpu::BufferRef& sums, const BrickList& lit) = 0;
 
@@ -113,7 +113,7 @@ class Inject : public Pass {
   Out<OccludedFaces> faces{this, "faces", "shares of the faces between cells that surfaces occlude"};
 
  private:
-  /// The faces that surfaces occlude, and how far these were moved.
+  /// Finds the faces that surfaces occlude, and how far these were moved.
   void findFaces(PassContext& frame, OccludedFaces::Level& level) {
     const GridPlacement& grid = level.grid;
     if (fragments->grid.voxelSize > grid.voxelSize * 1.001f)
@@ -126,7 +126,7 @@ class Inject : public Pass {
     const auto empty = [&](gpu::Format format, const char* label) {
       return frame.emptyVolume(walls.resolution, format, label);
     };
-    Channels parts, filled;  // of the three axes
+    Channels parts, filled;  // for the three axes
     for (std::size_t axis = 0; axis < 3; ++axis) {
       parts[axis] = empty(gpu::Format::r32ui, "parts of faces");
       filled[axis] = empty(gpu::Format::r32ui, "parts of faces, corners filled");
@@ -159,8 +159,9 @@ class InjectRsmPass : public Inject {
     if (!map.present() || map->lightCount == 0) return;
     // The grids bound virtual content; captured walls lie beyond them.
     if (map->views == nullptr)
-      throw Error("a captured map, most of which lies outside of the grids around the virtual content; expected a map of "
-                  "lights");
+      throw Error(
+          "a captured map, most of which lies outside of the grids around the virtual content; expected a map of "
+          "lights");
     const gpu::TextureDescription& layers = map->flux->description();
     using Variant = inject_rsm::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})

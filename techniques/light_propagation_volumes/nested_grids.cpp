@@ -16,7 +16,7 @@ namespace {
 /// lies.
 constexpr float kMargin = 1.5f + 1.0f / 6.0f;
 
-/// Without the cells that the scene does not reach.
+/// The grid without the cells that the scene does not reach.
 GridPlacement trimmed(const GridPlacement& grid, const Bounds& bounds) {
   GridPlacement result = grid;
   for (int axis = 0; axis < 3; ++axis) {

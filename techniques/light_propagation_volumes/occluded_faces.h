@@ -1,4 +1,4 @@
-// Knowledge of the surfaces in the cells of light propagation: a kind of port of this technique's own.
+// The surfaces in the cells of light propagation: a kind of port of this technique's own.
 #pragma once
 
 #include "lumivox/pipeline/port.h"

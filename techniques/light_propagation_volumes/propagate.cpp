@@ -1,4 +1,4 @@
-// Propagation from cell to cell: Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis Gomes 2015, Sec. 4.3.3.
+// Propagates light from cell to cell: Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis Gomes 2015, Sec. 4.3.3.
 #include <cmath>
 
 #include "nested_grids.h"
@@ -13,7 +13,7 @@ namespace {
 /// everywhere passes a cell of size h with the intensity L 3/2 h^2.
 constexpr float kMeanProjection = 1.5f;
 
-/// Light on its way: two sets of textures that take turns, and which bricks of them hold light.
+/// Travelling light: two sets of textures that take turns, and the bricks in them that hold light.
 struct Travelling {
   std::array<Channels, 2> light;
   std::array<gpu::TextureRef, 2> stamps;
@@ -65,7 +65,7 @@ class PropagatePass : public Pass {
   void run(PassContext& frame) override {
     const NestedGrids levels = fluxIn(injected);
     if (occludesByNormals()) requirePackedVoxels(levels, faces);
-    // Light that comes in from outside passes the faces of the border.
+    // Light from outside passes the faces of the border.
     if (!occludesByNormals() || !gridsApart()) requireFaces(levels, faces);
     ShGrid total = *injected, left = *injected;
     forEachLevel(levels, [&](std::size_t i) {
@@ -75,7 +75,7 @@ class PropagatePass : public Pass {
       const Travelling state = start(frame, level, faces->levels[i], outside, sum);
       const int last = iterate(frame, level, faces->levels[i], state, sum);
       left.levels[i].coefficients = state.light[static_cast<std::size_t>(last)];
-      // Where light stays in its cell, the last state is the sum already.
+      // Where light stays in its cell, the last state already is the sum.
       total.levels[i].coefficients = publishedTransfer() ? left.levels[i].coefficients : sum;
     });
     light = total;
@@ -103,7 +103,7 @@ class PropagatePass : public Pass {
     if (outside != nullptr && !gridsApart()) {
       variant.outside = start::Variant::outsideGrid;
       const glm::vec3 size = glm::vec3(outside->grid.resolution) * outside->grid.voxelSize;
-      // The same radiance passes cells in proportion to their faces.
+      // Equal radiance passes cells in proportion to the areas of their faces.
       parameters.outsideShare = std::pow(cell / outside->grid.voxelSize, 2.0f);
       parameters.cellInOutside = glm::vec3(cell) / size;
       parameters.lowInOutside = (level.grid.low - outside->grid.low) / size;
@@ -121,7 +121,7 @@ class PropagatePass : public Pass {
     return result;
   }
 
-  /// Which of the two sets holds the light after the last iteration.
+  /// Returns which of the two sets holds the light after the last iteration.
   int iterate(PassContext& frame, const ShGrid::Level& level, const OccludedFaces::Level& surfaces,
               const Travelling& state, const Channels& sum) {
     const bool plain = publishedTransfer() || occludesByNormals() || method == Method::plain;
@@ -135,7 +135,7 @@ class PropagatePass : public Pass {
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
-      // The flux of the last iteration has not passed its cell yet: it is still travelling.
+      // The flux of the last iteration is still travelling: it has not passed its cell yet.
       const bool passes = i + 1 < iterations && !publishedTransfer();
       frame.dispatch(program,
                      {propagate::parameters({.resolution = level.grid.resolution,

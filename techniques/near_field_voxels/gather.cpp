@@ -1,5 +1,5 @@
-// One bounce near the visible surfaces: Thiedemann et al. 2011, Sec. 5; thesis Gomes 2015, Sec. 3.2.3 and
-// 4.4.6. Bits say where a ray ends, reflective shadow maps how bright it is there.
+// Gathers one bounce near the visible surfaces: Thiedemann et al. 2011, Sec. 5; thesis Gomes 2015, Sec. 3.2.3
+// and 4.4.6. Bits tell where a ray ends, reflective shadow maps how bright that place is.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -103,7 +103,7 @@ class GatherPass : public Pass {
 
   bool readsMap() const { return radiance == Radiance::map && map.present() && map->lightCount > 0; }
 
-  /// Error where what is connected does not belong together.
+  /// Error where the connected inputs do not belong together.
   void checkInputs() const {
     if (!arriving.wanted()) return;
     if (radiance == Radiance::voxels) {
@@ -184,7 +184,7 @@ class GatherPass : public Pass {
                                   .fetches = fetches.wanted(),
                                   .bitRule = method.axis()};
     const shader::BoundProgram& program = frame.program(variant, constantsOf());
-    // Heeded only where there are frames before; something must be bound.
+    // Read only after earlier frames, but always bound.
     const auto earlier = [&](const History<gpu::TextureRef>& sum) -> const gpu::TextureRef& {
       return sum.previous ? sum.previous : gbuffer->position;
     };
@@ -210,12 +210,12 @@ class GatherPass : public Pass {
     if (fetches.wanted()) fetches = Image{counted, false};
   }
 
-  /// In as many dispatches as keep the loops within what drivers run: portions of the rays, and, where there
-  /// are very many, of the lights.
+  /// Dispatches portions of the rays and, where there are very many, of the lights, to keep loops within what
+  /// drivers run.
   void dispatchAll(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
                    gather::Rays& parameters, int lights, glm::ivec3 samples) const {
     const std::int64_t ofRay = method.turns(*bits), ofLight = 1 + 4;
-    // Half of the limit at most, so that a ray has room beside them.
+    // Half of the limit at most, which leaves room for a ray.
     const int lightsAtOnce = portionOf(lights, 2 * ofLight);
     forEachPortion(rays, ofRay + lightsAtOnce * ofLight, [&](int firstRay, int raysAtOnce) {
       for (int light = 0; light == 0 || light < lights; light += lightsAtOnce) {

@@ -1,4 +1,4 @@
-// Rays that are given, for tests and measurements.
+// Traces given rays, for tests and measurements.
 #include "near_field_voxels_shaders.h"
 #include "passes.h"
 

@@ -1,4 +1,4 @@
-// Which texels of what the lights see are taken as lights.
+// Chooses the texels of the lights' views that become lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +17,11 @@ using namespace shaders::reflective_shadow_maps;
 
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
-/// Texels along a side of a patch. With 4, 8 and 16 the lights of five scenes err alike; with 1, rows of
-/// views that look the same way, by up to a fifth more.
+/// Texels along a side of a patch. On five scenes 4, 8 and 16 err alike; 1, which gives rows of views that
+/// look the same way, errs by up to a fifth more.
 constexpr std::uint32_t kPatchRows = 16;
 
-/// Texels of all layers together; the tree of sums numbers them.
+/// Number of texels of all layers together, as the tree of sums numbers them.
 std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
   const gpu::TextureDescription& flux = map.flux->description();
   return static_cast<std::uint32_t>(flux.width) * static_cast<std::uint32_t>(flux.height) *
@@ -73,7 +73,7 @@ class ChoosePass : public Pass {
 
   int areaCode() const { return static_cast<int>(areaOf()); }
 
-  /// Each sample of a light is a light of its own, unless they share their areas.
+  /// Each sample of a light is a separate light, unless samples share their areas.
   int overlapping(PassContext& frame) const {
     if (map->overlapping > 0) return map->overlapping;
     if (areaOf() != Area::shared) return map->lightCount;
@@ -89,18 +89,18 @@ class ChoosePass : public Pass {
     const auto bytesOf = [](int lights) {
       return std::vector{choose::taken.elementBytes * static_cast<std::uint64_t>(lights)};
     };
-    // What is small is simply taken.
+    // Small lists are taken without a check.
     if (count > 65536) requireRoom(frame, count, bytesOf, "lights on surfaces");
     return frame.elements(choose::taken, static_cast<std::uint64_t>(count), "lights on surfaces");
   }
 
-  /// By a tree of sums (sum_tree.glsl).
+  /// Chooses by a tree of sums (sum_tree.glsl).
   SurfaceLights byFlux(PassContext& frame) const {
     const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
     const gpu::TextureDescription& flux = map->flux->description();
     const auto width = static_cast<std::uint32_t>(flux.width),
                height = static_cast<std::uint32_t>(flux.height);
-    // TexelOrder in sum_tree.glsl. Where all lights have six views, those of one direction go together.
+    // TexelOrder in sum_tree.glsl: where all lights have six views, views of one direction are adjacent.
     constexpr int kCubeViews = 6;
     const bool inPatches = order == Order::patches;
     const auto layers = static_cast<std::uint32_t>(map->layerCount);

@@ -1,4 +1,4 @@
-// The technique's passes that have files of their own.
+// The technique's passes with files of their own.
 #pragma once
 
 #include "lumivox/plugin/technique.h"

@@ -1,5 +1,5 @@
-// Reflective shadow maps: Dachsbacher & Stamminger 2005, "Reflective shadow maps"; thesis Gomes 2015,
-// Sec. 2.2. What every light sees, as a source of one-bounce light, and gathering from it without visibility.
+// Reflective shadow maps: Dachsbacher & Stamminger 2005, "Reflective shadow maps"; thesis Gomes 2015, Sec.
+// 2.2. Every light's view is a source of one-bounce light, which is gathered without visibility.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -61,7 +61,7 @@ class RenderPass : public LightViewPass {
   }
 };
 
-/// One over the sum of the printed weights, the squares of the pattern's distances (gather.comp).
+/// Reciprocal of the sum of the printed weights, the squares of the pattern's distances (gather.comp).
 float publishedScale(int samples) {
   double sum = 0.0;
   for (int i = 0; i < samples; ++i) {

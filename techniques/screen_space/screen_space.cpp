@@ -15,7 +15,7 @@ namespace {
 
 namespace code = shaders::screen_space;
 
-/// What both passes share: points around each surface point, looked up in the image.
+/// Common parts of both passes: points around each surface point, looked up in the image.
 class ScreenPass : public Pass {
  protected:
   // In the order of its numbers in screen.glsl.
@@ -44,8 +44,8 @@ class ScreenPass : public Pass {
     return static_cast<float>(ambientOcclusionDistance(frame.snapshot().bounds));
   }
 
-  /// Runs a program over the pixels that get a result, and returns the results: the mean over the frames
-  /// since something changed, in runs that accumulate.
+  /// Runs a program over the pixels that get a result. Returns the results; in runs that accumulate, their
+  /// mean over the frames since the last change.
   template <class Variant, class Constants>
   Image sampled(PassContext& frame, Variant variant, Constants constants, const shader::BindingSet& own,
                 const char* what) const {
@@ -60,7 +60,7 @@ class ScreenPass : public Pass {
     const CameraView& camera = frame.snapshot().camera;
     variant.accumulated = accumulated > 0;
     constants.surface = static_cast<int>(Surface(surface));
-    // The two programs include one text, so that their blocks and names are the same.
+    // Both programs include one text, so that they have the same blocks and names.
     frame.dispatch(
         frame.program(variant, constants),
         {own, GBufferBinding(*gbuffer),

@@ -13,15 +13,15 @@ namespace lumivox::thesis_cone_tracing {
 inline constexpr const char* kDrawnMeaning =
     "voxels are the vertices of a draw without attributes (Table 1); off: invocations of a compute shader";
 
-/// The two programs of a pass over voxels, which store to so many images.
+/// The two programs of a pass over voxels, and the number of images that they store to.
 struct VoxelPrograms {
   shader::ProgramName compute, drawn;
   int images = 1;
 };
 
-/// An invocation of one of them for each voxel of a volume, and a barrier. Error where the device has no such
-/// vertex shaders: OpenGL 4.5 asks for none. Vertices come in threes, as triangles that lie outside of what
-/// is seen: as many as are needed to reach the last voxel.
+/// Runs an invocation of one of them for each voxel of a volume, then a barrier. Error where the device's
+/// vertex shaders cannot store to images, which OpenGL 4.5 does not demand. Vertices come in threes, as
+/// invisible triangles, until the last voxel is reached.
 inline void forEachVoxel(PassContext& frame, const VoxelPrograms& programs,
                          const shader::BindingSet& bindings, const glm::ivec3& size, bool drawn) {
   if (!drawn) {

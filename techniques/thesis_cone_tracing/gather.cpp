@@ -12,10 +12,10 @@ namespace {
 
 namespace gather = shaders::thesis_cone_tracing::gather;
 
-/// What the cones read.
+/// The store that cones read.
 struct Store : shader::BindingSet {
   int axis = 0;
-  float length = 0;  ///< no cone need be longer, m
+  float length = 0;  ///< longest useful cone, m
 };
 
 Store begun(int axis, const GridPlacement& grid, float unit, int levels) {
@@ -51,8 +51,8 @@ Store storeOf(const DirectionalRadianceGrid& grid) {
 }
 
 Store storeOf(const OctreeBricks& octree) {
-  // Along each axis an even number of the voxels of every level, down to those of which four are the longest
-  // side: there a cone ends.
+  // Along each axis an even number of voxels at every level, down to the level of four voxels along the
+  // longest side, where a cone ends.
   GridPlacement whole = octree.tree.grid;
   int multiple = 1;
   while (8 * multiple <= whole.longest()) multiple *= 2;

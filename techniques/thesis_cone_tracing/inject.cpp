@@ -1,6 +1,6 @@
-// Direct light into dense grids (thesis Gomes 2015, Sec. 4.2.1): a running average in 8 bits whose last
-// channel counts fragments (Listings 4.8 and 4.9), and a pass that makes opacities of the counts
-// (Listing 4.10).
+// Injects direct light into dense grids (thesis Gomes 2015, Sec. 4.2.1): a running average in 8 bits whose
+// last channel counts fragments (Listings 4.8 and 4.9), and a pass that turns counts into opacities (Listing
+// 4.10).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class InjectPass : public Pass {
       throw Error(
           "thesis_cone_tracing.inject: input 'fragments' brings along direct light that the image has, and Listing 4.8 lights every fragment; expected fragments without it ('direct' of voxelization.reproject left out)");
     VoxelAverages result;
-    // As many voxels along all axes.
+    // The same number of voxels along all axes.
     result.grid = fragments->grid;
     result.grid.resolution = glm::ivec3(fragments->grid.longest());
     result.unit = white > 0.0f ? white
@@ -75,7 +75,7 @@ class InjectPass : public Pass {
   }
 };
 
-/// The corrected grids of `averages`, of which there must be so many.
+/// The corrected grids of `averages`, which must be so many.
 std::vector<gpu::TextureRef> corrected(PassContext& frame, const VoxelAverages& averages,
                                        std::size_t expected, bool drawn) {
   if (averages.grids.size() != expected)

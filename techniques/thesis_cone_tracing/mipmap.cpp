@@ -1,5 +1,5 @@
-// Coarser levels of dense grids (thesis Gomes 2015, Sec. 4.2.1): the mean of eight children in one read, and
-// for six directional grids what is seen of them along each axis (Fig. 64).
+// Makes coarser levels of dense grids (thesis Gomes 2015, Sec. 4.2.1): the mean of eight children in one
+// read, and for six directional grids the children as seen along each axis (Fig. 64).
 #include "drawn.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/ports/directional_radiance_grid.h"

@@ -1,5 +1,5 @@
-// The nodes of a sparse voxel octree from a list of fragments, depth after depth (thesis Gomes 2015,
-// Sec. 4.2.2, Listings 4.16 to 4.22).
+// Builds the nodes of a sparse voxel octree from a list of fragments, depth by depth (thesis Gomes 2015, Sec.
+// 4.2.2, Listings 4.16 to 4.22).
 #include "octree.h"
 
 #include <span>
@@ -37,7 +37,7 @@ class OctreePass : public Pass {
       "places of voxels; in_leaves: in the eighths of leaves, with only those nodes that contain fragments; at_corners: at the corners of nodes (Crassin et al. 2011)"};
   Out<OctreeNodes> tree{this, "tree", "nodes, and places for their bricks"};
 
-  /// What the tree needs: the most that any frame wanted, which is what later ones get.
+  /// Size of the tree: the most that any frame wanted, which later frames get.
   struct Room {
     std::uint32_t bricks = 0, tiles = 0, leaves = 0;
   };
@@ -56,7 +56,7 @@ class OctreePass : public Pass {
     result.levels =
         frame.buffer(OctreeNodes::levelWord(result.depth + 1) * sizeof(std::uint32_t), "octree levels");
     subdivide(frame, result);
-    // Where a frame wanted more than there was room for, it is rendered again with as much as it wanted.
+    // A frame that wanted more room than there was is rendered again with as much as it wanted.
     for (auto [word, wanted] : {std::pair{0, &room_.bricks}, {1, &room_.tiles}, {2, &room_.leaves}})
       frame.checkAfterFrame(result.levels, static_cast<std::uint64_t>(word) * sizeof(std::uint32_t),
                             [had = wanted](PassContext&, std::uint32_t wants) {
@@ -67,8 +67,8 @@ class OctreePass : public Pass {
     tree = result;
   }
 
-  /// Depth after depth. Where a depth has too little room the next ones find no nodes: each time that the
-  /// frame is rendered anew one more depth is counted.
+  /// Subdivides depth by depth. Where a depth has too little room, the next ones find no nodes; each new
+  /// rendering of the frame counts one more depth.
   void subdivide(PassContext& frame, const OctreeNodes& result) const {
     std::vector<std::uint32_t> words(OctreeNodes::levelWord(result.depth + 1));
     words[1] = 1;  // the root's tile
@@ -90,8 +90,8 @@ class OctreePass : public Pass {
     frame.dispatch(frame.program(octree_dispatches::kProgram),
                    {octree_dispatches::room({room_.bricks, room_.tiles, room_.leaves}), bound},
                    {result.depth + 1, 1, 1});
-    // The print looks for them before each depth is tagged; here a node holds its place where its neighbours
-    // come to stand until it is subdivided.
+    // The print looks neighbours up before each depth is tagged. Here a node holds its place in the word of
+    // its neighbours until it is subdivided.
     for (int depth = 0; depth <= result.depth; ++depth)
       forEachFragment(frame, frame.program(octree_neighbours::kProgram),
                       {octree_neighbours::depth({depth}), bound}, *fragments);

@@ -1,4 +1,4 @@
-// What passes over the octree share. GLSL side: shaders/thesis_cone_tracing/octree.glsl and
+// Common parts of passes over the octree. GLSL side: shaders/thesis_cone_tracing/octree.glsl and
 // octree_levels.glsl.
 #pragma once
 
@@ -14,7 +14,7 @@ class OctreeBinding : public shader::BindingSet {
   explicit OctreeBinding(const OctreeNodes& tree, int poolShift = 0);
 };
 
-/// `threads` invocations for each brick of a depth; a barrier follows.
+/// Runs `threads` invocations for each brick of a depth, then a barrier.
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const OctreeNodes& tree, int depth, int threads);
 

@@ -16,8 +16,8 @@ namespace {
 /// In the order of octree_transfer.comp.
 enum class Transfer { add, copy, average };
 
-/// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
-/// both have are added or averaged, or those of the higher one are copied to the lower one.
+/// Completes the voxels that bricks of a depth share with their neighbours along x, y and z: both parts are
+/// added or averaged, or the higher one is copied to the lower one.
 void transferBorders(PassContext& frame, const OctreeBricks& octree, int depth, Transfer way) {
   const auto along = [&](int axis, Transfer how) {
     forEachBrick(
@@ -34,7 +34,7 @@ void transferBorders(PassContext& frame, const OctreeBricks& octree, int depth, 
   }
 }
 
-/// All depths above the leaves: centres, faces, edges and corners of bricks, one after another, as means that
+/// Fills all depths above the leaves: centres, faces, edges and corners of bricks in turn, as means that
 /// neighbours average or as shares that they add up.
 void fillLevels(PassContext& frame, OctreeBricks& octree, bool means) {
   constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
@@ -50,7 +50,7 @@ void fillLevels(PassContext& frame, OctreeBricks& octree, bool means) {
   octree.filledLevels = octree.tree.depth + 1;
 }
 
-/// Room for all bricks, about a cube of them: less than a layer of it stays empty.
+/// Makes a pool for all bricks, about a cube with less than one empty layer.
 void makePool(PassContext& frame, OctreeBricks& octree) {
   octree.poolShift = 0;
   while ((std::uint64_t{1} << (3 * (octree.poolShift + 1))) <= octree.tree.brickRoom) ++octree.poolShift;
@@ -65,7 +65,8 @@ gpu::BufferRef emptySums(PassContext& frame, const OctreeNodes& tree) {
   return frame.emptyElements(octree_bricks::sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
-/// The bricks of the leaves from the sums of their voxels; with the opacity of others, unless those are null.
+/// Fills the bricks of leaves from the sums of their voxels, with the opacity of other bricks unless these
+/// are null.
 void resolveLeaves(PassContext& frame, const OctreeBricks& octree, const gpu::BufferRef& sums,
                    bool coverageSum, const gpu::TextureRef& opaque = nullptr) {
   const bool inLeaves = octree.tree.voxels == OctreeNodes::Voxels::inLeaves;
@@ -80,10 +81,10 @@ void resolveLeaves(PassContext& frame, const OctreeBricks& octree, const gpu::Bu
 
 constexpr int kStages = 2;  // of octree_sums.glsl
 
-/// What octree_leaves.comp averages, in its order.
+/// The quantities that octree_leaves.comp averages, in its order.
 enum class Surface { light, colour, normal };
 
-/// The leaves of a tree with what fragments are, on the mean.
+/// The leaves of a tree with the mean attributes of fragments.
 OctreeBricks leavesOf(PassContext& frame, const OctreeNodes& tree, const VoxelFragments& fragments,
                       Surface what, float ambient) {
   OctreeBricks result;

@@ -25,20 +25,21 @@ struct OctreeNodes {
   gpu::BufferRef levels;  ///< OctreeLevels
   int depth = 0;          ///< of the leaves
   Voxels voxels = Voxels::inLeaves;
-  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
-  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
+  std::uint64_t brickRoom = 0;  ///< bricks with room
+  std::uint64_t leafRoom = 0;   ///< those of them of the finest level
 
-  /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
+  /// Layout of `levels` in words: those before all depths, those of one depth, and those before a depth's
+  /// dispatches.
   static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;
   /// Numbers of threads a brick for which there are dispatches.
   static constexpr std::array<int, 6> kThreads{1, 6, 8, 9, 12, 27};
   static constexpr int kBrickSide = 3, kBrickVoxels = 27;  ///< voxels along a brick, and in it
   static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8;
-  /// Words of `levels` before those of a depth.
+  /// Index in `levels` of a depth's first word.
   static constexpr std::uint64_t levelWord(int depth) {
     return kLevelsBegin + kLevelWords * static_cast<std::uint64_t>(depth);
   }
-  /// The middle of voxel 0 of every level, in finest voxels from the corner of the grid.
+  /// Middle of voxel 0 of every level, in finest voxels from the grid's corner.
   float firstVoxel() const { return voxels == Voxels::inLeaves ? 0.0f : 0.5f; }
 
   /// A brick, read back.
@@ -76,7 +77,7 @@ struct OctreeBricks {
     const gpu::TextureDescription& pool = radiance->description();
     return {pool.width, pool.height, pool.depth};
   }
-  /// Of the texels of the pool: those of bricks that there are, of the levels that are filled.
+  /// Which texels of the pool belong to bricks of filled levels.
   std::vector<bool> texelsInUse() const {
     const glm::ivec3 size = poolSize();
     std::vector<bool> result(GridPlacement{.resolution = size}.voxelCount());
@@ -90,7 +91,7 @@ struct OctreeBricks {
         }
     return result;
   }
-  /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
+  /// The voxels of a level, each once; a voxel shared with the neighbour above belongs to that one.
   /// `component`: 3 gives the opacity, 0 the three channels of radiance.
   std::vector<VoxelsRead::Voxel> voxels(int level, int component) const {
     const std::vector<float> texels = radiance->downloadFloats(0);

@@ -8,9 +8,8 @@
 
 namespace lumivox::thesis_cone_tracing {
 
-/// What the fragments of each voxel reflect, averaged in 8 bits in the order in which they come (thesis Gomes
-/// 2015, Listing 4.9): radiance in units of `unit`, and the number of fragments modulo 256 in place of the
-/// opacity.
+/// Radiance reflected by the fragments of each voxel, averaged in 8 bits in order of arrival (thesis Gomes
+/// 2015, Listing 4.9), in units of `unit`, with the number of fragments modulo 256 in place of the opacity.
 struct VoxelAverages {
   GridPlacement grid;
   /// One for all sides, or six for the faces of DirectionalRadianceGrid.

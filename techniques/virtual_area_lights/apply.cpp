@@ -1,5 +1,5 @@
-// The averaged lights of sparse points where the camera sees surfaces (Lensing and Broll 2013, Sec. 3.2 steps
-// 3 and 4).
+// Applies the averaged lights of sparse points to visible surfaces (Lensing and Broll 2013, Sec. 3.2 steps 3
+// and 4).
 #include <tuple>
 
 #include "lumivox/base/error.h"
@@ -78,7 +78,7 @@ class ApplyPass : public Pass {
   }
 
   bool atVertices() const { return at == At::vertices; }
-  /// Error where they are missing, or refer to other points.
+  /// Error where vertices are missing or refer to other points.
   void checkVertices() const {
     if (!vertices.present())
       throw Error(

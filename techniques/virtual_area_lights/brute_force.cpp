@@ -1,5 +1,5 @@
-// Every virtual area light at every pixel: the oracle of the sparse points, and what they are faster than
-// (Lensing and Broll 2013, Sec. 6).
+// Evaluates every virtual area light at every pixel: the truth for sparse points, and the baseline of their
+// speed (Lensing and Broll 2013, Sec. 6).
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "passes.h"

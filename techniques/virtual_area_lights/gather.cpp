@@ -1,5 +1,5 @@
-// The light of all virtual area lights at every sparse point, and as one averaged light for each lobe
-// (Lensing and Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
+// Gathers all virtual area lights at every sparse point and averages them to one light per lobe (Lensing and
+// Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
 #include <array>
 #include <vector>
 
@@ -15,8 +15,8 @@ namespace {
 using namespace shaders::virtual_area_lights;
 
 constexpr int kChunk = 128;  // kChunk in gather.comp
-/// beta of resolvedExponent(): points are as far apart as 1.4 times the width of a lobe of exponent k,
-/// sqrt(1/k). Of 1/4 to 4 the one with the least error over exponents 10 to 10^5 (in the card).
+/// beta of resolvedExponent(): the spacing of points is 1.4 times the width sqrt(1/k) of a lobe of exponent
+/// k. Among 1/4 to 4 this value has the least error over exponents 10 to 10^5 (see the card).
 constexpr float kResolvedBySpacing = 2.0f;
 constexpr float kSmallWeights = 1e-6f;  ///< epsilon of Eq. 7 for all lights together; the print has no value
 

@@ -1,5 +1,4 @@
-// Averaged lights made so strong that they give back what all lights give (Lensing and Broll 2013, Sec. 3.2
-// step 2).
+// Scales averaged lights so that each gives what all lights give (Lensing and Broll 2013, Sec. 3.2 step 2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,7 +75,7 @@ class NormalisePass : public Pass {
   void tellShare(PassContext& frame, const Normalised& of, const char* lobe) const {
     if (!frame.inspects() || asPublished || points->count == 0) return;
     auto shares = of.kept->downloadValues<float>();
-    shares.resize(static_cast<std::size_t>(points->count));  // the pool may give a longer buffer
+    shares.resize(static_cast<std::size_t>(points->count));  // a pooled buffer may be longer
     double lost = 0.0;
     std::size_t clamped = 0;
     for (const float share : shares) {

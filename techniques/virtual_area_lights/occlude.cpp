@@ -1,4 +1,4 @@
-// What stands between points and their averaged lights (Lensing and Broll 2013, Sec. 3.3).
+// Finds the occlusion between points and their averaged lights (Lensing and Broll 2013, Sec. 3.3).
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "passes.h"

@@ -17,7 +17,7 @@ void addOcclude(TechniqueRegistry& registry);
 void addApply(TechniqueRegistry& registry);
 void addBruteForce(TechniqueRegistry& registry);
 
-/// What a glossy lobe reads of the camera: neither where it looks nor how wide.
+/// The camera's position, which is all that a glossy lobe reads of it.
 inline std::vector<float> eyeOf(const SceneSnapshot& snapshot) {
   const glm::vec3& eye = snapshot.camera.eye;
   return {eye.x, eye.y, eye.z};

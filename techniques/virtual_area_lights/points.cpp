@@ -1,5 +1,4 @@
-// Sparse points of the surfaces (Lensing and Broll 2013, Sec. 3.2): spread in advance, moved with the
-// surfaces.
+// Spreads sparse points over surfaces in advance and moves them along (Lensing and Broll 2013, Sec. 3.2).
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
@@ -54,7 +53,7 @@ class PointsPass : public Pass {
                            .state = state};
   }
 
-  /// Of three textures and the two buffers of the grid, as long as it may become.
+  /// Bytes of three textures and of the grid's two buffers at their longest.
   static std::vector<std::uint64_t> bytesOf(int points) {
     const glm::ivec2 size = SurfacePoints::sizeFor(points);
     const std::uint64_t texture = sizeof(glm::vec4) * static_cast<std::uint64_t>(size.x * size.y);

@@ -5,7 +5,7 @@
 
 namespace lumivox::virtual_area_lights {
 
-/// The light of many small lights as one for each point of SurfacePoints and lobe (Lensing and Broll 2013,
+/// Many small lights averaged to one for each point of SurfacePoints and each lobe (Lensing and Broll 2013,
 /// Sec. 3.2). Point i is texel (i % kWidth, i / kWidth).
 struct SparseLight {
   static constexpr int kWidth = SurfacePoints::kWidth;

@@ -10,7 +10,7 @@
 
 namespace lumivox::virtual_area_lights {
 
-/// A texel of zeros for each point.
+/// A zero texel for each point.
 inline gpu::TextureRef sparseTexture(PassContext& frame, const SurfacePoints& points,
                                      const std::string& label) {
   const glm::ivec2 size = SurfacePoints::sizeFor(points.count);
@@ -20,7 +20,7 @@ inline gpu::TextureRef sparseTexture(PassContext& frame, const SurfacePoints& po
   return result;
 }
 
-/// An invocation a point.
+/// Runs an invocation for each point.
 inline void forEachPoint(PassContext& frame, const shader::BoundProgram& program,
                          const shader::BindingSet& bindings, const SurfacePoints& points) {
   if (points.count > 0) frame.dispatchList(program, bindings, static_cast<std::uint64_t>(points.count));

@@ -1,5 +1,5 @@
-// Light of surface patches, gathered at sparse points of the surfaces and averaged there to one light for
-// each (Lensing and Broll 2013).
+// Light of surface patches, gathered at sparse points of the surfaces and averaged to one light per point
+// (Lensing and Broll 2013).
 #include "passes.h"
 
 LUMIVOX_TECHNIQUE(registry) {

@@ -1,4 +1,4 @@
-// Listings 4.51 to 4.53 of thesis Gomes 2015 as they are printed; ours is MarchPass.
+// Listings 4.51 to 4.53 of thesis Gomes 2015 as printed; ours is MarchPass.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ using namespace shaders::volumetric_smoke;
 
 namespace {
 
-// Of tiny particles in huge voxels: still a number where their density vanishes.
+// Tiny particles in huge voxels still give a number where their density vanishes.
 constexpr double kLargestAmount = 1e30;
 
 class MarchAsPublishedPass : public Pass {

@@ -15,10 +15,10 @@ using namespace shaders::volumetric_smoke;
 
 namespace {
 
-constexpr std::uint64_t kCoordinates = 3;         // of a particle, in a buffer of floats
+constexpr std::uint64_t kCoordinates = 3;         // floats of a particle in a buffer
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
-/// Sec. 4.5: the particle system. Table 2 calls it particle update.
+/// Sec. 4.5: the particle system, which Table 2 calls particle update.
 class ParticlesPass : public Pass {
   Out<Particles> particles{this, "particles", "positions of the particles of every medium"};
 
@@ -52,7 +52,7 @@ class ParticlesPass : public Pass {
   }
 };
 
-/// Sec. 4.5, Listing 4.50: particles into the grid. Even media and volume files join here.
+/// Sec. 4.5, Listing 4.50: inserts particles, uniform media and volume files into the grid.
 class InsertPass : public Pass {
   enum class Deposit { clouds, counts };
 
@@ -97,7 +97,7 @@ class InsertPass : public Pass {
     media = result;
   }
 
-  /// The texture of a volume file is uploaded once.
+  /// Uploads the texture of a volume file once.
   void uploadVolume(PassContext& frame, const DensityVolume& volume, ScatteringGrid::Medium& result) {
     result.grid = {glm::vec3(volume.low - frame.snapshot().origin), static_cast<float>(volume.voxelSize),
                    volume.resolution};
@@ -219,12 +219,13 @@ class MarchPass : public Pass {
         {size, 1});
   }
 
-  /// Those to all lights side by side along z. Null where so many lights do not fit into a texture.
+  /// Makes the transmittances to all lights, side by side along z. Null where so many lights do not fit into
+  /// a texture.
   gpu::TextureRef makeTransmittances(PassContext& frame, const MediaBinding& bound,
                                      const LightBinding& lights, march::Parameters& parameters) {
     const int lightCount = lights.count;
     constexpr float kSpacings = 2.0f;
-    constexpr int kFewest = 4;  // points along a side that are still a grid
+    constexpr int kFewest = 4;  // fewest points along a side of a useful grid
     const int side = std::min<int>(lightResolution, frame.device().info().maxTextureSize3d / lightCount);
     if (side < kFewest) {
       frame.warn(
@@ -240,7 +241,7 @@ class MarchPass : public Pass {
     parameters.gridSide = side;
     parameters.gridLow = box.low;
     parameters.gridHigh = box.high;
-    // A place just inside a lit surface is then looked up among points that are outside.
+    // The look-up at a place just inside a lit surface then uses points outside it.
     const glm::vec3 spacing = (box.high - box.low) / static_cast<float>(side);
     parameters.nearReach = cells > 0 ? kSpacings * std::max({spacing.x, spacing.y, spacing.z}) : 0.0f;
     const glm::ivec3 size(side, side, side * lightCount);
@@ -272,7 +273,7 @@ class UpsamplePass : public Pass {
 
   void run(PassContext& frame) override {
     const CameraView& camera = frame.snapshot().camera;
-    // By either side: half of one pixel is one.
+    // Compares both sides: half of one pixel is one.
     const gpu::TextureDescription& samples = scatteredSamples->texture->description();
     const int perSample = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
     makeImages(frame, {camera.width, camera.height}, scattered, transmittance);

@@ -22,12 +22,12 @@ inline gpu::ResourceBinding viewOf(const CameraView& camera, int pixelsPerSample
        .perRow = camera.direction(0.0f, 1.0f) - corner});
 }
 
-/// Samples of a march along either side of the image, with one for 2 x 2 pixels or for each.
+/// Numbers of samples along both sides of the image: one for each pixel or for 2 x 2 pixels.
 inline glm::ivec2 samplesOf(const CameraView& camera, int pixelsPerSample) {
   return (glm::ivec2(camera.width, camera.height) + pixelsPerSample - 1) / pixelsPerSample;
 }
 
-/// Makes both results of a march or of its upsampling.
+/// Makes both result images of a march or of its upsampling.
 inline void makeImages(PassContext& frame, const glm::ivec2& size, Out<Image>& scattered,
                        Out<Image>& transmittance) {
   const gpu::TextureDescription image{gpu::TextureKind::d2, gpu::Format::rgba32f, size.x, size.y, 1, 1};

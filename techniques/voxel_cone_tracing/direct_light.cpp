@@ -28,7 +28,7 @@ DirectLight::DirectLight(Pass* pass)
 }
 
 float DirectLight::brightest(PassContext& frame, float nearest) const {
-  // What a surface reflects, and what it emits besides.
+  // What a surface reflects, and its emission.
   return (emission ? 2.0f : 1.0f) * largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) +
          ambient / glm::pi<float>();
 }

@@ -8,11 +8,11 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// Half floats end at 65504; filtering adds nothing to the largest. A store in half floats counts radiance in
-/// units of its brightest over this.
+/// Half floats end at 65504; filtering never exceeds the largest value. A store in half floats has the unit
+/// of its brightest radiance over this.
 inline constexpr float kLargestHalf = 32768.0f;
 
-/// Lights, and what lies between them and surfaces: members of a pass.
+/// Lights and their visibility; members of a pass.
 struct DirectLight {
   explicit DirectLight(Pass* pass);
 
@@ -24,11 +24,11 @@ struct DirectLight {
   Param<bool> twoSided;
   Param<bool> emission;
 
-  /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
+  /// The most that a voxel at least this far from lights can reflect, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;
 
-  /// The radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and of each voxel
-  /// the number and the brightest of its fragments. In a clipmap its levels say what is most.
+  /// Writes the radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and for each
+  /// voxel the number and the brightest of its fragments. A clipmap has a bound per level.
   void reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums, float mostRadiance,
                const gpu::BufferRef& radiances) const;
 };

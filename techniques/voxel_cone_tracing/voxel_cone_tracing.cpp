@@ -1,5 +1,5 @@
-// The passes of voxel cone tracing, by chapters: the cones themselves (cones/), and the stores that they
-// read, dense grids (dense/), an octree (octree/) and a clipmap (clipmap/); views of any grid (views/).
+// The passes of voxel cone tracing by chapters: cones (cones/); the stores that they read, which are dense
+// grids (dense/), an octree (octree/) and a clipmap (clipmap/); and views of any grid (views/).
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::voxel_cone_tracing {

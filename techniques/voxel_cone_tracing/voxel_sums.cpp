@@ -9,7 +9,7 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
-/// Without sums, and of bricks only how many there are.
+/// Places without sums, and only the number of bricks.
 VoxelSums placed(const glm::ivec3& size, bool directional) {
   VoxelSums sums;
   sums.directional = directional;
@@ -19,12 +19,12 @@ VoxelSums placed(const glm::ivec3& size, bool directional) {
 std::uint64_t bricksOf(const VoxelSums& sums) {
   return GridPlacement{.resolution = sums.brickCount}.voxelCount();
 }
-/// No more voxels than fragments are occupied.
+/// At most as many voxels as fragments are occupied.
 std::uint64_t mostSums(const VoxelFragments& fragments, const glm::ivec3& size) {
   return std::min<std::uint64_t>(fragments.capacity, GridPlacement{.resolution = size}.voxelCount());
 }
 
-/// Room for a list of so many bricks at most, and their totals.
+/// A list of at most so many bricks, and their totals.
 struct BrickRoom {
   OccupiedBricks bricks;
   gpu::BufferRef totals;
@@ -33,7 +33,7 @@ struct BrickRoom {
       : bricks{frame.elements(claim::brickList, most, label),
                frame.buffer(OccupiedBricks::argumentsBytes(3), label + ": how many")},
         totals(frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels")) {}
-  /// The dispatches over them.
+  /// Makes the dispatches over the bricks.
   void finish(PassContext& frame) const {
     frame.dispatch(frame.program(arguments::kProgram),
                    {arguments::brickTotals(totals), arguments::brickCount(bricks.count)}, {1, 1, 1});
@@ -73,7 +73,7 @@ VoxelSums claimChanged(PassContext& frame, const VoxelFragments& fragments, cons
   sums.voxels = directional ? frame.elements(add::directionalSums, voxels, "sums of voxels' faces")
                             : frame.elements(add::sums, voxels, "sums of voxels");
   const BrickRoom all(frame, std::min(fragments.capacity, bricksOf(sums)), "occupied bricks"),
-      // What was occupied before may be so no more.
+      // Voxels that were occupied before may be empty now.
       some(frame, std::min(2 * fragments.capacity, bricksOf(sums)), "changed bricks");
   const shader::BindingSet bindings{claim::size({sums.brickCount}), changed.bindings(), sums.bindings()};
   frame.dispatch(frame.program(changed_bricks::kProgram), bindings, sums.brickCount);

@@ -8,13 +8,13 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// What fragments do to the faces of their voxel, where it has six.
+/// How fragments affect the six faces of their voxel.
 struct FaceRule {
   float backWeight = 1.0f / 256.0f;  ///< of a fragment's back in the mean of a face, where fronts have 1
   bool alongAll = false;             ///< closes its voxel along all axes, not only along those that it faces
 };
 
-/// Room for the sums of occupied voxels, and where they lie.
+/// The sums of occupied voxels, and their places.
 struct VoxelSums {
   int kind = 0;  ///< value of the shader's axis PLACES
   glm::ivec3 brickCount{0};
@@ -22,35 +22,35 @@ struct VoxelSums {
   FaceRule faces;             ///< directional
   gpu::BufferRef bricks;      ///< of a grid
   gpu::BufferRef sideMasks;   ///< samples of voxels' sides, a word a fragment; null: none
-  shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
+  shader::BindingSet places;  ///< locate the sums of a voxel; refers to what it binds
   gpu::BufferRef voxels;
-  const ChangedCells* changed = nullptr;  ///< where there are some, the fragments in them are taken alone
+  const ChangedCells* changed = nullptr;  ///< where set, only the fragments in these cells are taken
   shader::BindingSet bindings() const {
     if (directional) return {places, shaders::voxel_cone_tracing::add::directionalSums(voxels)};
     return {places, shaders::voxel_cone_tracing::add::sums(voxels)};
   }
 };
 
-/// Finds the occupied bricks of a grid of this size, and gives every occupied voxel its place among the sums.
-/// There are no more of them than fragments, so that nothing that happens on the device need be known here.
+/// Finds the occupied bricks of a grid of this size and gives every occupied voxel its place among the sums.
+/// There are at most as many as fragments, so that the host need not read anything back.
 VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
                     bool directional, OccupiedBricks& occupied);
 
-/// The same where only some cells have changed since `bricks` was claimed, which is brought up to date: room
-/// for the sums of those alone. `changedBricks`: those that hold or held anything.
+/// The same where only some cells have changed since `bricks` was claimed, which is updated: sums of those
+/// cells only. `changedBricks`: those that hold or held anything.
 VoxelSums claimChanged(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
                        bool directional, const ChangedCells& changed, const gpu::BufferRef& bricks,
                        OccupiedBricks& occupied, OccupiedBricks& changedBricks);
 
-/// Room for what fragments reflect.
+/// A buffer for the radiance that fragments reflect.
 gpu::BufferRef radiancesOf(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums);
 
-/// An invocation for each fragment that is taken, by a program with the axis CHANGED; a barrier follows.
+/// Runs an invocation for each fragment that is taken, by a program with the axis CHANGED; then a barrier.
 void forEachTaken(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelFragments& fragments, const VoxelSums& sums);
 
-/// Adds what fragments reflect to the sums of their voxels, of which the number and the brightest of the
-/// fragments are known.
+/// Adds what fragments reflect to the sums of their voxels. The number and the brightest of each voxel's
+/// fragments must be known.
 void addUp(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
            const gpu::BufferRef& radiances);
 

@@ -1,4 +1,4 @@
-// Path tracing through voxels: Thiedemann, Henrich, Grosch & Mueller 2011, "Voxel-based global illumination"
+// Traces paths through voxels: Thiedemann, Henrich, Grosch & Mueller 2011, "Voxel-based global illumination"
 // (slides); thesis Gomes 2015, Sec. 3.2.4.
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ using namespace shaders::voxel_path_tracing;
 
 constexpr int kMostBounces = 1024;
 
-/// Turns of the loop over light samples, for each of them.
+/// Loop turns per light sample.
 constexpr int kTurnsOfLight = 1;
 
 /// Turns of the loop by which a ray is moved out of a set voxel: `startOf` in path.glsl.
@@ -88,13 +88,13 @@ class TracePass : public Pass {
   bool readsMap() const { return map.present() && map->lightCount > 0; }
   bool readsAttributes() const { return bounces > 1 && attributes.present(); }
 
-  /// A bound for the turns of all loops of one ray of a path.
+  /// Bounds the turns of all loops of one ray of a path.
   std::int64_t turnsOfRay() const {
     const std::int64_t lights = readsMap() ? std::int64_t{kTurnsOfLight} * map->lightCount : 0;
     return method.turns(*bits) + lights + kTurnsOfPush;
   }
 
-  /// Error where what is connected does not belong together.
+  /// Error where the connected inputs do not belong together.
   void checkInputs() const {
     if (bounces > 1) {
       if (!attributes.present())
@@ -144,7 +144,7 @@ class TracePass : public Pass {
   }
 
   struct Outputs {
-    bool arriving, reflected;  ///< what is summed up
+    bool arriving, reflected;  ///< which light is summed
     bool any() const { return arriving || reflected; }
   };
 
@@ -164,7 +164,7 @@ class TracePass : public Pass {
             .raysAtOnce = 1};
   }
 
-  /// What both orders read.
+  /// The bindings that both orders read.
   shader::BindingSet sceneOf(PassContext& frame) const {
     shader::BindingSet result{GBufferBinding(*gbuffer), method.binding(frame, *bits)};
     if (readsMap()) {
@@ -218,7 +218,7 @@ class TracePass : public Pass {
       });
   }
 
-  /// Every surface of a path stays in textures, a layer a bounce, and light is carried back over them.
+  /// Textures keep every surface of a path, one layer per bounce, and light is carried back over them.
   void followBackward(PassContext& frame, const shader::BindingSet& scene, const gpu::TextureRef& sums,
                       Path path, Outputs outputs) const {
     const glm::ivec3 size = pixels(frame);
@@ -259,7 +259,7 @@ class TracePass : public Pass {
     }
   }
 
-  /// Means over all paths.
+  /// Divides sums into means over all paths.
   void finish(PassContext& frame, const gpu::TextureRef& sums, Outputs outputs, float paths) {
     if (arriving.wanted()) arriving = Image{frame.image("arriving radiance")};
     if (glossy.wanted()) glossy = Image{frame.image("indirect glossy radiance")};

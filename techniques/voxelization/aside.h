@@ -1,4 +1,4 @@
-// Work that one thread leaves to many.
+// Shares large items of work among many threads.
 #pragma once
 
 #include <array>
@@ -8,16 +8,15 @@
 
 namespace lumivox::voxelization {
 
-/// Items that a dispatch puts aside because they would keep one thread too long, and that the next one shares
-/// out over many threads. Shader side: shaders/voxelization/aside.glsl.
+/// Items that a dispatch puts aside because they would keep one thread too long; the next dispatch shares
+/// them among many threads. Shader side: shaders/voxelization/aside.glsl.
 class Aside {
  public:
   /// Room for so many items.
   Aside(PassContext& frame, std::uint64_t mostItems)
       : buffer_(frame.buffer((kNothing.size() + mostItems) * sizeof(std::uint32_t), "items put aside")) {}
 
-  /// An invocation for each of `items` by a program of `variant`, and then for those that it put aside by the
-  /// one with MANY.
+  /// Runs a program of `variant` on each of `items`, and then the one with MANY on those that it put aside.
   template <class Variant, class Constants>
   void dispatch(PassContext& frame, Variant variant, const Constants& constants,
                 const shader::BindingSet& bindings, std::uint64_t items) const {

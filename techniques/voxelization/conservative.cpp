@@ -1,4 +1,4 @@
-// Every voxel that a triangle touches: by the rasteriser, through the dominant axis in a single pass
+// Finds every voxel that a triangle touches: by the rasteriser along the dominant axis in a single pass
 // (Crassin & Green 2012, Sec. 22.3), or by a compute shader over triangles (Schwarz & Seidel 2010). Both find
 // the same voxels.
 #include <algorithm>
@@ -12,7 +12,7 @@ using namespace shaders::voxelization;
 
 namespace {
 
-/// Triangles of one draw, for one work group: first index, number of triangles, object, material.
+/// Triangles of one draw for one work group: first index, number of triangles, object, material.
 using Batch = glm::uvec4;
 /// Draws that can share dispatches: those with the same textures.
 using BatchesByTextures = std::map<std::pair<const gpu::Texture*, const gpu::Texture*>, std::vector<Batch>>;
@@ -42,7 +42,7 @@ class ConservativePass : public Voxelizer {
       this, "method", Method::automatic,
       "how the voxels are found; raster: by the rasteriser; compute: by a compute shader; automatic: the faster of the two. All find the same voxels"};
 
-  /// Rows of tiles that fit into the list of large triangles; what does not is done without it.
+  /// Rows of tiles that fit into the list of large triangles; further rows do without it.
   static constexpr std::uint32_t kRowCapacity = 1u << 17;
   static constexpr std::size_t kBatchesAtOnce =
       std::tuple_size_v<decltype(conservative_compute::Batches::batches)>;
@@ -56,8 +56,9 @@ class ConservativePass : public Voxelizer {
     }
   }
 
-  /// A software rasteriser gains nothing from fixed functions. Elsewhere a triangle of less than a quad of
-  /// pixels wastes most of them (Schwarz & Seidel 2010, Sec. 6); surfaces fill about six sides of the grid.
+  /// A software rasteriser gains nothing from fixed functions. On other devices a triangle smaller than a
+  /// quad of pixels wastes most of them (Schwarz & Seidel 2010, Sec. 6). Surfaces fill about the grid's six
+  /// sides.
   bool prefersCompute(PassContext& frame, const Draws& draws) const {
     if (frame.device().info().software) return true;
     constexpr double kSmallestForRaster = 4.0;  // pixels of a quad

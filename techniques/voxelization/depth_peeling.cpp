@@ -1,5 +1,4 @@
-// Li et al. 2005: layers of depth are peeled from three orthogonal views, and every pixel of a layer is a
-// voxel.
+// Li et al. 2005: peels layers of depth from three orthogonal views; every pixel of a layer is a voxel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,11 +27,10 @@ class DepthPeelingPass : public Voxelizer {
             texture(gpu::Format::r32f, "depth in voxels of a layer")};
   }
 
-  /// Layers that are peeled along an axis: as many as earlier frames found and one more, which must turn out
-  /// empty.
+  /// Layers peeled along an axis: as many as earlier frames found and one more, which must be empty.
   struct Axis {
     int peeled = 4;
-    int deepest = 0;  ///< layer that showed something, counted from 1
+    int deepest = 0;  ///< deepest layer that showed something, counted from 1
   };
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
@@ -64,7 +62,7 @@ class DepthPeelingPass : public Voxelizer {
     }
   }
 
-  /// Whether the layers along an axis were all of them; `count` of them showed something.
+  /// Whether all layers along an axis were peeled; `count` of them showed something.
   bool wereAll(PassContext& frame, Axis& plan, int axis, int count) const {
     if (count == plan.peeled && plan.peeled < layers) {
       plan.peeled *= 2;
@@ -89,7 +87,7 @@ class DepthPeelingPass : public Voxelizer {
     frame.device().barrier();
   }
 
-  std::array<Axis, 3> static_, moving_;  ///< of static geometry and of what moves
+  std::array<Axis, 3> static_, moving_;  ///< for static and for moving geometry
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Opacity by multisampled rasterisation, as the voxels of 3D clipmaps have it (thesis Gomes 2015, Sec.
-// 3.5.2).
+// Finds opacity by multisampled rasterisation, as 3D clipmaps do (thesis Gomes 2015, Sec. 3.5.2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +29,7 @@ class MsaaOpacityPass : public Voxelizer {
   void run(PassContext& frame) override {
     const int most = frame.device().info().maxSamples;
     if (most < 2) throw Error("the device has one sample per pixel: it cannot measure coverage");
-    // Powers of two are what devices have.
+    // Devices offer powers of two.
     sampleCount_ = 2;
     while (2 * sampleCount_ <= std::min<int>(samples, most)) sampleCount_ *= 2;
     if (sampleCount_ < samples) {
@@ -46,9 +45,9 @@ class MsaaOpacityPass : public Voxelizer {
   VoxelFragments::Coverage coverage() const override { return VoxelFragments::Coverage::sum; }
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    // Viewports of different sizes, of which each triangle is drawn in one. Deviates from thesis 004
-    // Sec. 3.5.2, where a geometry stage chooses the viewport: here the vertex stage of each viewport leaves
-    // out what is not its own.
+    // Viewports of different sizes; each triangle is drawn in one of them. Deviates from thesis 004 Sec.
+    // 3.5.2, where a geometry stage chooses the viewport: here the vertex stage of each viewport drops the
+    // triangles of the others.
     int mostScale = 1;
     while (2 * mostScale <= supersampling) mostScale *= 2;
     for (int scale = 1; scale <= mostScale; scale *= 2)

@@ -1,4 +1,4 @@
-// Random points on the triangles (Mavridis & Papaioannou 2011, Sec. 3.1).
+// Voxelizes random points on the triangles (Mavridis & Papaioannou 2011, Sec. 3.1).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ class PointsPass : public Voxelizer {
       this, "spread", Spread::random,
       "random: random points; regular: centres of equal parts of the triangle, their number rounded up to a square"};
 
-  // Of one triangle; a grid around a camera may see a small part of a huge one.
+  // Most points of one triangle; a grid around a camera may see a small part of a huge one.
   static constexpr int kMostPoints = 1 << 24;
 
   std::uint64_t expectedFragments(const Scene& scene, const GridPlacement& grid) const override {
@@ -39,22 +39,22 @@ class PointsPass : public Voxelizer {
     return scene.triangleCount() * (spread == Spread::regular ? side * side : each);
   }
 
-  /// As many as the scene's triangles ask for, or as a grid that is a small part of it may hold.
+  /// The points that the scene's triangles ask for, or those that a grid over a small part of it may hold.
   std::uint64_t expectedOfArea(const Scene& scene, double voxelSize) const {
     double all = 0.0;
     forEachArea(scene, [&](double area) {
       const double asked = std::ceil(static_cast<double>(density) * area / (voxelSize * voxelSize));
       all += std::clamp(asked, 1.0, double{kMostPoints});
     });
-    // A part in 64 for squares, and for areas that the device rounds otherwise.
+    // An extra 1/64 for squares and for areas that the device rounds differently.
     all *= spread == Spread::regular ? 1.5 : 1.0 + 1.0 / 64.0;
-    // Surfaces fill about as many voxels as six sides of the grid, twice.
+    // Surfaces fill about twice as many voxels as the grid's six sides.
     const double held = 12.0 * resolution * resolution * static_cast<double>(density) +
                         static_cast<double>(scene.triangleCount());
     return static_cast<std::uint64_t>(around == Around::scene ? all : std::min(all, held));
   }
 
-  /// Of every triangle of the scene at rest, m^2.
+  /// Calls `work` with the area of every triangle of the scene at rest, m^2.
   template <class Work>
   static void forEachArea(const Scene& scene, const Work& work) {
     for (const Object& object : scene.objects) {

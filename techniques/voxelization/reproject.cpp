@@ -1,4 +1,4 @@
-// Voxels from the surfaces that the camera sees (Mavridis & Papaioannou 2011, Sec. 3.2).
+// Makes voxels from the surfaces that the camera sees (Mavridis & Papaioannou 2011, Sec. 3.2).
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
@@ -14,7 +14,7 @@ class ReprojectPass : public GridPass {
   In<GBuffer> gbuffer{this, "gbuffer", "what the camera sees"};
   In<VoxelFragments> base{this, "fragments", Presence::optional,
                           "voxels to which the visible surface points are added; their grid is used"};
-  // Sec. 3.2: the points bring the direct light along that the deferred renderer has computed.
+  // Sec. 3.2: the points carry the direct light that the deferred renderer has computed.
   In<Image> direct{
       this,
       "direct",

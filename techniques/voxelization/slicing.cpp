@@ -36,7 +36,7 @@ class SlicingPass : public Voxelizer {
     }
   }
 
-  /// In voxels: what lies outside of a slice's clip planes as a whole is not drawn for it.
+  /// Bounds in voxels; a draw wholly outside a slice's clip planes is skipped for it.
   Bounds boundsOf(PassContext& frame, const SceneDraw& draw, const GridPlacement& grid) {
     const ObjectState& state = frame.snapshot().objects[static_cast<std::size_t>(draw.object)];
     if (!state.positions.empty()) return {glm::vec3(-1e30f), glm::vec3(1e30f)};  // it deforms

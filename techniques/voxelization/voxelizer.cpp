@@ -34,7 +34,7 @@ VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const V
   if (base == nullptr) return list;
   assert(base->workGroupSize == kWorkGroupSize);
   list.coverage = base->coverage;
-  list.reflected = base->reflected;  // of the first fragments, which are the same
+  list.reflected = base->reflected;  // shared by the first fragments, which are the same
   frame.dispatchIndirect(
       frame.program(copy::kProgram),
       {copy::baseCount(base->count), copy::baseFragments(base->fragments), appending(list)}, *base->count,
@@ -97,14 +97,14 @@ gpu::TextureRef GridPass::markedWords(PassContext& frame, const GridPlacement& g
 }
 
 std::uint64_t Voxelizer::expectedFragments(const Scene& scene, const GridPlacement&) const {
-  // Surfaces fill about as many voxels as six sides of the grid, twice where they lie between two layers;
-  // every triangle touches at least one, mostly a few.
+  // Surfaces fill about as many voxels as the grid's six sides, twice as many between two layers; every
+  // triangle touches at least one, usually a few.
   const auto side = static_cast<std::uint64_t>(resolution);
   return 12 * side * side + 4 * scene.triangleCount();
 }
 
 VoxelFragments Voxelizer::listOfStatic(PassContext& frame, const GridPlacement& grid, const Draws& still) {
-  // A first guess is no reason to ask for more than one buffer can have.
+  // A first guess must not exceed what one buffer can hold.
   const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
   if (room_ == 0)
     room_ = std::max<std::uint64_t>(std::min(expectedFragments(frame.sceneDescription(), grid), most), 1);
@@ -141,7 +141,7 @@ void Voxelizer::run(PassContext& frame) {
          count_behind::parameters({static_cast<int>(list.capacity), kWorkGroupSize})},
         {1, 1, 1});
   }
-  // Where nothing moves, the next list from nothing will be as long as this one.
+  // Where nothing moves, the next list made from nothing will be as long as this one.
   finishGuessed(frame, list.count, list.capacity, 0, room_, moving.empty() && around == Around::scene);
   fragments = list;
 }

@@ -1,5 +1,5 @@
-// Common parts of all voxelizers of triangles: where the grid lies, the list of fragments, and static
-// geometry that is voxelized once.
+// Common parts of all voxelizers of triangles: the placement of the grid, the list of fragments, and static
+// geometry, which is voxelized once.
 #pragma once
 
 #include <functional>
@@ -15,17 +15,18 @@
 
 namespace lumivox::voxelization {
 
-inline constexpr int kWorkGroupSize = kCountedGroupSize;  // of the passes that read a list of fragments
+inline constexpr int kWorkGroupSize =
+    kCountedGroupSize;  // work group size of passes that read a list of fragments
 
-/// Where the grid lies: around the whole scene, or around the camera, moving with it by whole voxels.
+/// Placement of the grid: around the whole scene, or around the camera, moving with it by whole voxels.
 enum class Around { scene, camera };
 
-/// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
-/// device's arithmetic may round otherwise.
+/// Bounds in voxels of `bounds` in object space, with a margin of one voxel, since the device may round
+/// differently.
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
 
-/// A list in this grid with room for `more` fragments behind those of `base`, and those copied: all on the
-/// device. Without a base (null) it is empty. Error when it would be too large.
+/// A list in this grid that begins with a copy of `base` and has room for `more` fragments; all on the
+/// device. Without a base (null) it is empty. Error where it would be too large.
 VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
                           std::uint64_t more);
 
@@ -38,11 +39,11 @@ shader::BindingSet appending(const VoxelFragments& list);
 /// column of voxels in a square target of the grid's longest side.
 gpu::ResourceBinding viewAlong(const GridPlacement& grid, int axis, float depthLow, float depthHigh);
 
-/// The base of all passes that make a grid of their own.
+/// Base class of passes that make a grid of their own.
 class GridPass : public Pass {
  public:
   std::string checkParameters() const override;
-  /// Sources that voxels of the scene's surface in this grid depend on.
+  /// Sources that the voxels of the scene's surfaces depend on.
   Reads readsFrom() const override;
 
  protected:
@@ -53,7 +54,7 @@ class GridPass : public Pass {
     Draws still, moving;
   };
   static DrawsByMotion drawsByMotion(PassContext& frame);
-  /// The result of make(), kept as long as the grid and the objects of these draws stay where they are.
+  /// The result of make(), kept while the grid and the objects of these draws stay in place.
   template <class Make>
   static auto keptWhile(PassContext& frame, const GridPlacement& grid, const Draws& still,
                         const std::string& what, const Make& make) {
@@ -63,8 +64,8 @@ class GridPass : public Pass {
       key.second.push_back(frame.snapshot().objects[static_cast<std::size_t>(draw->object)].toWorld);
     return frame.kept(what, key, make);
   }
-  /// Words, d3 r32ui, in which draws set bits. Those of static geometry are kept, and in every frame those of
-  /// what moves are added to a copy of them.
+  /// Words, d3 r32ui, in which draws set bits. Those of static geometry are kept; every frame adds those of
+  /// moving geometry to a copy of them.
   using Mark = std::function<void(const gpu::Texture& words, const Draws& draws)>;
   static gpu::TextureRef markedWords(PassContext& frame, const GridPlacement& grid, const glm::ivec3& size,
                                      const std::string& label, const Mark& mark);
@@ -78,18 +79,18 @@ class GridPass : public Pass {
                       "m",  "side of the grid with 'around camera', where it is required; unused otherwise"};
 };
 
-/// A list of fragments begins with those of static geometry, and what moves is written behind them in every
-/// frame anew: nothing has to be merged, and nothing old can stay.
+/// Base class of voxelizers that append to a list. It begins with the fragments of static geometry; every
+/// frame writes those of moving geometry behind them. Nothing has to be merged, and nothing old can stay.
 class Voxelizer : public GridPass {
  public:
   void run(PassContext& frame) override;
 
  protected:
-  /// Appends the fragments of these draws, of which there is one at least. The device's barrier follows.
+  /// Appends the fragments of these draws, at least one of them. The caller issues the barrier.
   virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
-  /// How the coverages of one voxel's fragments are combined.
+  /// How the coverages of a voxel's fragments combine.
   virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
-  /// A first guess at the number of fragments; a frame whose list was too small is made anew.
+  /// First guess at the number of fragments; a frame whose list was too small is rendered again.
   virtual std::uint64_t expectedFragments(const Scene& scene, const GridPlacement& grid) const;
 
   Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
@@ -97,10 +98,10 @@ class Voxelizer : public GridPass {
  private:
   VoxelFragments listOfStatic(PassContext& frame, const GridPlacement& grid, const Draws& still);
 
-  std::uint64_t room_ = 0;  ///< fragments that the list is made for: a guess, or what earlier frames needed
+  std::uint64_t room_ = 0;  ///< fragments that the list has room for: a guess, or what earlier frames needed
 };
 
-/// Each registers the passes of its file.
+/// Each function registers the passes of its file.
 void addConservative(TechniqueRegistry& registry);
 void addMsaaOpacity(TechniqueRegistry& registry);
 void addSlicing(TechniqueRegistry& registry);

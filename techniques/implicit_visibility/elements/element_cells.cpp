@@ -9,7 +9,7 @@ namespace lumivox::implicit_visibility {
 
 namespace {
 
-/// As bucketOf() in neighbours.glsl.
+/// Equals bucketOf() in neighbours.glsl.
 std::uint32_t hashOf(const glm::ivec3& cell, std::uint32_t grid) {
   const glm::uvec3 words(cell);
   return words.x * 73856093u ^ words.y * 19349663u ^ words.z * 83492791u ^ grid * 2654435761u;

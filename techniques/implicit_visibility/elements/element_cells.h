@@ -1,4 +1,4 @@
-// Which elements are near a point: grids of cubes, one for each size of elements (neighbours.glsl).
+// Finds the elements near a point by grids of cubes, one for each size of elements (neighbours.glsl).
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// A leaf's support reaches so many of its radii: 1.5 times the distance of neighbours on a square lattice.
+/// Reach of a leaf's support in its radii: 1.5 times the distance of neighbours on a square lattice.
 inline constexpr float kReach = 2.15f;
 inline constexpr int kMostSizes = 16;
 

@@ -1,4 +1,4 @@
-// Trees of surface elements, made once (Dong et al. 2007, Sec. 4.1; step 2 of Algorithm 1).
+// Makes trees of surface elements, once (Dong et al. 2007, Sec. 4.1; step 2 of Algorithm 1).
 #include "element_hierarchy.h"
 
 #include <fmt/format.h>

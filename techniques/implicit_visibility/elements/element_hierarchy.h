@@ -1,4 +1,4 @@
-// The hierarchy of surface elements, which is made once: a kind of port of this technique's own.
+// The hierarchy of surface elements, made once: a kind of port of this technique's own.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// Trees of elements and what their nodes reflect, without places (Dong et al. 2007, Sec. 4.1).
+/// Trees of elements and the reflectances of their nodes, without positions (Dong et al. 2007, Sec. 4.1).
 struct ElementHierarchy {
   std::shared_ptr<const Forest> forest;
   SurfaceElements fixed;  ///< without position, normal and state
@@ -19,7 +19,7 @@ struct ElementHierarchy {
 class ElementWords {
  public:
   explicit ElementWords(Pass* pass);
-  /// Made once a run and kept.
+  /// Made once per run and kept.
   ElementHierarchy made(PassContext& frame) const;
 
  private:

@@ -1,6 +1,6 @@
 // Trees of surface elements (Dong, Kautz, Theobalt and Seidel 2007, Sec. 4.1): quadtrees of discs over the
-// segments of a surface, and groups of four above the segments. Numbers of nodes alone tell parents and
-// children.
+// segments of a surface, and groups of four above the segments. Parents and children follow from the numbers
+// of nodes alone.
 #pragma once
 
 #include <array>
@@ -52,14 +52,13 @@ struct ElementTree {
   std::uint32_t leafCount = 0;   ///< nodes 0 .. leafCount - 1
   std::uint32_t firstGroup = 0;  ///< nodes from here on are groups, those before are discs
   std::uint32_t nodeCount = 0;
-  /// The leaves, then runs of nodes whose children all lie in earlier runs: the order in which values are
-  /// pulled up.
+  /// The leaves, then runs of nodes whose children all lie in earlier runs. Pull-up follows this order.
   std::vector<Run> levels;
   std::vector<std::array<std::uint32_t, 4>>
       children;                        ///< of node leafCount + i; kNoElement where there are fewer
   std::vector<std::uint32_t> parents;  ///< of each node; kNoElement for those without
   std::vector<std::uint32_t> segmentOfLeaf;
-  /// Of each of Scene::positions, where leaves stand on vertices (kNoElement: none does); else empty.
+  /// Where leaves stand on vertices, the leaf of each of Scene::positions (kNoElement: none); else empty.
   std::vector<std::uint32_t> leafOfVertex;
   /// Of each leaf, where its corners begin in ElementState::corners, and one more; empty where leaves are
   /// discs.

@@ -9,7 +9,7 @@
 namespace lumivox::implicit_visibility {
 namespace {
 
-/// Sums of samples, each with a weight.
+/// Weighted sums of samples.
 class Means {
  public:
   void add(const Scene& scene, const Part& part, std::uint32_t triangle, const glm::dvec2& weights,
@@ -66,7 +66,7 @@ bool varies(const Scene& scene, const Part& part) {
   return material.diffuseTexture >= 0 || material.maskTexture >= 0;
 }
 
-/// A point of the triangle in place of one beside it.
+/// Moves a point beside the triangle onto it.
 glm::dvec2 clamped(glm::dvec2 weights) {
   weights = glm::max(weights, glm::dvec2(0.0));
   const double sum = weights.x + weights.y;
@@ -120,7 +120,7 @@ LeafMaterial materialOfVertex(const Scene& scene, std::span<const CornerPiece> p
     while (corner < 2 && scene.indices[3 * piece.triangle + static_cast<std::uint32_t>(corner)] != vertex)
       ++corner;
     for (int i = 0; i < count; ++i) {
-      // Half the way to the other corners is the vertex's.
+      // The vertex's part reaches half the way to the other corners.
       auto [x, y] = r2Point(i);
       if (x + y > 1.0) x = 1.0 - x, y = 1.0 - y;
       std::array<double, 3> weights{};

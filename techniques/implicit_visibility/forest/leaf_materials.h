@@ -1,4 +1,4 @@
-// What a piece of the surface reflects and emits on average, and how much of it masks leave.
+// Mean reflectances and emission of a piece of surface, and the share of it that masks leave.
 #pragma once
 
 #include <span>
@@ -15,10 +15,10 @@ struct LeafMaterial {
   Leaf on(Leaf leaf) const;
 };
 
-/// Around a leaf's place on its triangle, on a square of its area: the mean of kMaterialSamples samples.
+/// The mean of kMaterialSamples samples on a square of the leaf's area around its place on its triangle.
 LeafMaterial materialOfPiece(const Scene& scene, const Part& part, const Leaf& leaf);
 
-/// A triangle at a vertex, and the part of its area that is the vertex's.
+/// A triangle at a vertex, with the part of its area that belongs to the vertex.
 struct CornerPiece {
   std::uint32_t triangle;
   const Part* part;

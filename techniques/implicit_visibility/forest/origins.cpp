@@ -51,15 +51,16 @@ struct Extent {
     });
     if (area > 0.0) diagonal = glm::distance(low, high);
   }
-  /// A texel that takes all of a chart, whatever its shape; smaller for needles, which are hardly any of it.
+  /// Size of a texel that holds a whole chart of any shape; smaller for needles, which cover hardly any of
+  /// it.
   double wholeTexel() const { return std::min(2.0 * diagonal, 100.0 * std::sqrt(area)); }
 };
 
-/// Texel sizes that give each object its part of the elements. Objects whose part is below one have one each,
-/// beyond the number, so that thousands of them leave nothing less to what is larger.
+/// Texel sizes that give each object its share of the elements. Objects with a share below one have one
+/// element each beyond the number, so that thousands of them take nothing from larger objects.
 struct TexelSizes {
   std::vector<double> ofObjects;  ///< m
-  double elements;                ///< that they give
+  double elements;                ///< number of elements that they give
 
   TexelSizes(const Scene& scene, double wanted, double share) : ofObjects(scene.objects.size(), 1.0) {
     std::vector<Extent> extents;
@@ -73,7 +74,7 @@ struct TexelSizes {
       weights.push_back(extent.area > 0.0 ? std::pow(extent.area / largest, share) : 0.0);
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     const auto isAlone = [&](double weight) { return wanted * weight < total; };
-    double alone = 0.0, shared = 0.0;  // how many are; weight of the others
+    double alone = 0.0, shared = 0.0;  // number of these objects; weight of the others
     for (const double weight : weights)
       if (!isAlone(weight))
         shared += weight;
@@ -87,7 +88,8 @@ struct TexelSizes {
   }
 };
 
-/// About as many texels as wanted: charts end in texels that are not full, so that the first try gives more.
+/// Finds an atlas of about the wanted number of texels. Charts end in texels that are not full, so the first
+/// try gives more.
 SurfaceAtlas atlasOf(const Scene& scene, const OriginSettings& settings) {
   TexelSizes sizes(scene, settings.elements, settings.share);
   SurfaceAtlas best = makeSurfaceAtlas(scene, sizes.ofObjects, AtlasPlaces::middles);
@@ -97,7 +99,7 @@ SurfaceAtlas atlasOf(const Scene& scene, const OriginSettings& settings) {
   constexpr int kTries = 4;
   constexpr double kNear = 0.05;
   for (int i = 0; i < kTries && !best.texels.empty() && farness(best) > kNear; ++i) {
-    // No chart has less than one texel: where charts are many, only what is beyond that can change.
+    // No chart has less than one texel; only the texels beyond those can change in number.
     const auto charts = static_cast<double>(best.chartCount), found = static_cast<double>(best.texels.size());
     const double fixed = charts > 0.5 * sizes.elements ? charts : 0.0;
     if (!(found > fixed && sizes.elements > fixed)) break;
@@ -116,8 +118,8 @@ bool hasTexcoords(const Scene& scene, const Object& object) {
                      [&](const glm::vec2& texcoord) { return texcoord != all.front(); });
 }
 
-/// The UV island of each triangle of an object: triangles hang together over edges whose ends are at the same
-/// places in space and in the texture. Numbers from `next` on, by Scene::indices.
+/// The UV island of each triangle of an object. Triangles are connected by edges whose ends coincide in space
+/// and in the texture. Islands are numbered from `next` on, by Scene::indices.
 void findIslands(const Scene& scene, const Object& object, std::vector<std::uint32_t>& islandOf,
                  std::uint32_t& next) {
   const WeldedObject welded = weld(scene, object);
@@ -197,7 +199,7 @@ void addTexels(const Scene& scene, const SurfaceAtlas& atlas, const SegmentMap& 
       }
 }
 
-/// Places of vertices in the planes of their charts: along the two axes in which these planes lie closest.
+/// Places of vertices in the planes of their charts, along the two axes closest to these planes.
 glm::dvec2 placeInPlane(const Scene& scene, const Object& object, const Leaf& leaf,
                         const glm::dvec3& normal) {
   const glm::dvec3 place = object.placement * glm::dvec4(glm::dvec3(scene.positions[leaf.vertex]), 1.0);
@@ -251,10 +253,10 @@ Origins findOrigins(const Scene& scene, const OriginSettings& settings) {
   if (scene.triangleCount() == 0) return origins;
   const bool atlasLeaves = settings.source == Source::atlas;
   const auto leaves = atlasLeaves ? static_cast<std::uint64_t>(settings.elements) : scene.positions.size();
-  // Of a leaf: itself, its texel and outline twice, and its nodes with their states and textures.
+  // The leaf itself, its texel and outline twice, and its nodes with their states and textures.
   constexpr std::uint64_t kBytesPerLeaf = 1024;
   requireRoom({"places and trees", leaves, leaves * kBytesPerLeaf}, ofHost());
-  // With vertices the atlas gives charts alone: texels as large as the objects are enough.
+  // For vertices the atlas only gives charts, so that texels as large as the objects suffice.
   const SurfaceAtlas atlas =
       atlasLeaves ? atlasOf(scene, settings)
                   : makeSurfaceAtlas(

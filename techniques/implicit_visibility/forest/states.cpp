@@ -1,4 +1,4 @@
-// Where the nodes of a forest are at a moment.
+// The state of a forest's nodes at a time.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -11,7 +11,7 @@
 namespace lumivox::implicit_visibility {
 namespace {
 
-/// An object's vertices in the world at a moment.
+/// An object's vertices in the world at a time.
 class PlacedObject {
  public:
   PlacedObject(const Scene& scene, const SceneSnapshot& snapshot, std::uint32_t object)
@@ -34,8 +34,8 @@ class PlacedObject {
     const std::uint32_t* at = &scene_->indices[3 * triangle];
     return {position(at[0]), position(at[1]), position(at[2])};
   }
-  /// Along the front side's normal, twice as long as the triangle's area. A mirroring placement turns the
-  /// winding around; the front side stays with the surface.
+  /// Vector along the front side's normal with twice the triangle's area as its length. A mirroring placement
+  /// reverses the winding; the front side stays with the surface.
   glm::vec3 doubleArea(std::uint32_t triangle) const {
     const auto [a, b, c] = corners(triangle);
     return side_ * glm::cross(b - a, c - a);
@@ -81,7 +81,7 @@ class StateMaker {
   }
 
  private:
-  /// The area at rest, times what stretching made of it; 0 for what has become a point or a line.
+  /// The area at rest times the stretching; 0 for a triangle that has become a point or a line.
   float areaOf(const Leaf& leaf, std::uint32_t node, const PlacedObject& object,
                const glm::vec3& normal) const {
     if (normal == glm::vec3(0.0f)) return 0.0f;
@@ -114,7 +114,7 @@ class StateMaker {
     if (leaf.outline.count > 0) placeOutline(node, leaf, object);
   }
 
-  /// Corners follow the triangle. Areas of the rest keep the size of the outline's: they scale it.
+  /// Corners follow the triangle. With areas at rest the outline is scaled to keep its area.
   void placeOutline(std::uint32_t node, const Leaf& leaf, const PlacedObject& object) {
     const auto [a, b, c] = object.corners(leaf.triangle);
     float scale = state_.area[node] > 0.0f ? 1.0f : 0.0f;

@@ -1,4 +1,4 @@
-// What the camera sees of the light at elements (Dong et al. 2007, Sec. 4.3.1).
+// Shows the light of elements to the camera (Dong et al. 2007, Sec. 4.3.1).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ class DisplayPass : public Pass {
                          frame.uploaded(cells.leaves, "elements by cells")};
     });
   }
-  /// Leaves by where they are, for neighbours.glsl.
+  /// Leaves by their positions, for neighbours.glsl.
   shader::BindingSet cellBinding(PassContext& frame) const {
     const CellBuffers& cells = cellsOf(frame);
     return {sizesOf(cells), display::cellStarts(cells.starts), display::cellLeaves(cells.leaves)};
@@ -128,7 +128,7 @@ class DisplayPass : public Pass {
     return shader::UniformSlot<display::Cells>{"Cells"}(block);
   }
 
-  /// Values of leaves where the camera sees them, and `added`, where there is one.
+  /// Values of leaves where the camera sees them, plus `added` unless it is null.
   Image show(PassContext& frame, const shader::BindingSet& common, int of, const gpu::TextureRef& values,
              const Image& added, float empty = 0.0f) const {
     using display::Variant;
@@ -152,7 +152,7 @@ class DisplayPass : public Pass {
     return result;
   }
 
-  /// The Phong lobe over `radiance` of nodes, and `outgoing`, which may be null, and, with `sky`, over the
+  /// The Phong lobe over the `radiance` of nodes and `outgoing`, which may be null, and, with `sky`, over the
   /// environment where a bin has no link.
   Image showLobe(PassContext& frame, const shader::BindingSet& common, const gpu::TextureRef& radiance,
                  const gpu::TextureRef& outgoing, bool sky, const Image& added) const {

@@ -1,4 +1,4 @@
-// Colours at vertices, as the paper shows light (Dong et al. 2007, Sec. 4.3.1).
+// Colours at vertices, the paper's way of showing light (Dong et al. 2007, Sec. 4.3.1).
 #pragma once
 
 #include "../elements/surface_elements.h"
@@ -6,8 +6,8 @@
 
 namespace lumivox::implicit_visibility {
 
-/// Values of leaves that stand on vertices (two texels a leaf: front and back), interpolated over the
-/// triangles that the camera sees; w is 1 where there is a value. Error when leaves do not stand on vertices.
+/// Values of leaves on vertices (two texels per leaf: front and back), interpolated over the triangles that
+/// the camera sees; w is 1 where there is a value. Error where leaves do not stand on vertices.
 Image interpolatedOverTriangles(PassContext& frame, const SurfaceElements& elements, const GBuffer& gbuffer,
                                 const gpu::TextureRef& values);
 

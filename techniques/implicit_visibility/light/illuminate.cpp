@@ -1,4 +1,4 @@
-// Light from element to element (Dong et al. 2007, Sec. 4.3; steps 8 to 11 of Algorithm 1).
+// Transports light from element to element (Dong et al. 2007, Sec. 4.3; steps 8 to 11 of Algorithm 1).
 #include <algorithm>
 #include <utility>
 
@@ -103,7 +103,7 @@ class IlluminatePass : public Pass {
     light = result;
   }
 
-  /// What nodes send in a bounce: `outgoing` is null where nothing glossy passes anything on.
+  /// What nodes send in a bounce. `outgoing` is null where no glossy surface passes light on.
   struct Sent {
     gpu::TextureRef radiance, outgoing;
   };
@@ -138,7 +138,7 @@ class IlluminatePass : public Pass {
     if (rows != nullptr) pullUpOutgoing(frame, common, *rows, result.radiance, result.outgoing);
   }
 
-  /// What shines, over the short lists of links to it (Sec. 4.3.1).
+  /// Gathers emission over the short lists of links to emitters (Sec. 4.3.1).
   void gatherEmission(PassContext& frame, const shader::BindingSet& common, const ElementLight& result) {
     using Variant = light_leaves::Variant;
     frame.dispatchList(frame.program(Variant{.of = Variant::ofEmitted}),
@@ -150,7 +150,7 @@ class IlluminatePass : public Pass {
            {result.emission, nullptr}, result, result.directIrradiance, result.radiance);
   }
 
-  /// Lights without extent come first; what shines comes by links or by its samples, never by both.
+  /// Lights without extent come first. Emitters are taken by links or by samples, never by both.
   int lightCount(PassContext& frame, const LightBinding& lights) const {
     const auto withoutExtent = static_cast<int>(frame.sceneDescription().lights.size());
     if (!shadow.present()) return 0;
@@ -191,7 +191,7 @@ class IlluminatePass : public Pass {
                        kTogether * static_cast<std::uint64_t>(elements->leafCount));
   }
 
-  /// What the lobes of glossy leaves reflect of direct light: the beginning of the sum over bounces.
+  /// Adds what the lobes of glossy leaves reflect of direct light, the first term of the sum over bounces.
   void reflectDirect(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
                      const ElementLight& result, const gpu::TextureRef& outgoing) {
     using Variant = reflect_glossy::Variant;
@@ -205,7 +205,7 @@ class IlluminatePass : public Pass {
     pullUpOutgoing(frame, common, rows, result.radiance, outgoing);
   }
 
-  /// And of what comes over their links: into `outgoing`, and to the sum over bounces.
+  /// Adds what they reflect of light over their links, to `outgoing` and to the sum over bounces.
   void reflectLinks(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
                     const reflect_glossy::Variant& variant, reflect_glossy::Constants constants,
                     const Sent& sent, const ElementLight& result, const gpu::TextureRef& outgoing) {
@@ -233,7 +233,7 @@ class IlluminatePass : public Pass {
             kDirectionsTogether);
   }
 
-  /// `radiance`: of groups, whose fronts it knows.
+  /// `radiance`: that of groups, which tells their fronts.
   void pullUpOutgoing(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
                       const gpu::TextureRef& radiance, const gpu::TextureRef& outgoing) const {
     using namespace pull_up_outgoing;
@@ -247,7 +247,7 @@ class IlluminatePass : public Pass {
           static_cast<std::uint64_t>(level.count) * static_cast<std::uint64_t>(6 * directions * directions));
   }
 
-  /// For each link how many of its leaf's lead to the same node, which counts once.
+  /// For each link the number of its leaf's links to the same node, which counts once.
   const gpu::BufferRef& linksToSameNode(PassContext& frame) const {
     return frame.kept("how often elements are seen", links->seen, [&] {
       const ElementLists<ElementLink>& seen = *links->seen;
@@ -263,7 +263,7 @@ class IlluminatePass : public Pass {
     });
   }
 
-  /// Level by level from the leaves on; `sum`, which may be null, holds all bounces.
+  /// Pulls up level by level from the leaves; `sum`, which may be null, holds all bounces.
   void pullUp(PassContext& frame, const shader::BindingSet& common, const gpu::TextureRef& radiance,
               const gpu::TextureRef& sum, bool adds) {
     const shader::BoundProgram& program =

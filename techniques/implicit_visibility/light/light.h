@@ -1,4 +1,4 @@
-// What the passes that light elements and show them have in common.
+// Common parts of the passes that light elements and show them.
 #pragma once
 
 #include "../links/element_light.h"
@@ -9,7 +9,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// Positions and normals of nodes, and what is to be known of them by their numbers (nodes.glsl).
+/// Positions, normals and numbering of nodes (nodes.glsl).
 class NodeBinding : public shader::BindingSet {
  public:
   explicit NodeBinding(const SurfaceElements& elements, int bins = 0);
@@ -21,7 +21,7 @@ class LinkBinding : public shader::BindingSet {
   explicit LinkBinding(const ElementLinks& links);
 };
 
-/// A texture of rgba32f with so many texels, zeros: rows of SurfaceElements::kWidth.
+/// An rgba32f texture of so many zero texels, in rows of SurfaceElements::kWidth.
 gpu::TextureRef emptyTexels(PassContext& frame, int texels, const std::string& label);
 
 }  // namespace lumivox::implicit_visibility

@@ -35,7 +35,7 @@ std::shared_ptr<const OutgoingRows> outgoingRows(PassContext& frame, const Eleme
 }
 
 int outgoingTexels(const OutgoingRows& rows, int directions) {
-  constexpr std::uint64_t kMostRows = 16384;  // of texels, that OpenGL promises (4.5, table 23.53)
+  constexpr std::uint64_t kMostRows = 16384;  // rows of texels that OpenGL guarantees (4.5, table 23.53)
   const std::uint64_t perNode =
                           6 * static_cast<std::uint64_t>(directions) * static_cast<std::uint64_t>(directions),
                       texels = rows.count * perNode, most = kMostRows * ElementLight::kWidth;

@@ -1,4 +1,4 @@
-// Light that glossy elements pass on, by direction (Dong et al. 2007, Sec. 4.3).
+// Directional light that glossy elements pass on (Dong et al. 2007, Sec. 4.3).
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// The nodes with a glossy leaf, in their order: a row of ElementLight::outgoing each.
+/// The nodes with a glossy leaf, in order; each has a row of ElementLight::outgoing.
 struct OutgoingRows {
   int leaves = 0;                        ///< of them, which come first
   std::vector<ElementTree::Run> levels;  ///< runs of rows above the leaves, in the order of pull-up
@@ -18,7 +18,7 @@ struct OutgoingRows {
 
 std::shared_ptr<const OutgoingRows> outgoingRows(PassContext& frame, const ElementTree& tree);
 
-/// Texels of ElementLight::outgoing. Error when a texture does not hold them.
+/// Number of texels of ElementLight::outgoing. Error where no texture holds them.
 int outgoingTexels(const OutgoingRows& rows, int directions);
 
 /// How sent.glsl reads ElementLight::outgoing. Null `outgoing`: binds nothing.
@@ -27,7 +27,7 @@ class OutgoingBinding : public shader::BindingSet {
   OutgoingBinding(const gpu::TextureRef& outgoing, const gpu::BufferRef& rowsOfNodes, int directions);
 };
 
-/// The largest exponent of a Phong lobe that cubes of so many bins along a side resolve: it falls to a half
+/// The largest Phong exponent that a cube of so many bins along a side resolves: its lobe falls to a half
 /// within the width of a bin.
 double resolvedExponent(int bins);
 

@@ -1,6 +1,6 @@
-// Directions in the bins of a cube: 6 x N x N of them, aligned with the axes of the world (Dong, Kautz,
-// Theobalt and Seidel 2007, Sec. 4.2.2). shaders/implicit_visibility/links/direction_bins.glsl has the same
-// for shaders; a test compares them.
+// Bins of directions on a cube: 6 x N x N of them, aligned with the world's axes (Dong, Kautz, Theobalt and
+// Seidel 2007, Sec. 4.2.2). Their GLSL side is shaders/implicit_visibility/links/direction_bins.glsl; a test
+// compares the two.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class DirectionBins {
   BinMapping mapping() const { return mapping_; }
   std::uint32_t count() const { return 6u * perFace(); }
   std::uint32_t perFace() const { return static_cast<std::uint32_t>(side_ * side_); }
-  /// Any length above 0. Of components of equal size the earlier axis counts.
+  /// The direction may have any length above 0. Among components of equal size the earlier axis counts.
   std::uint32_t binOf(const glm::vec3& direction) const;
   std::uint32_t opposite(std::uint32_t bin) const {
     return bin % (2u * perFace()) < perFace() ? bin + perFace() : bin - perFace();
@@ -35,7 +35,7 @@ class DirectionBins {
   /// sr; those of all bins sum to 4 pi.
   float solidAngle(std::uint32_t bin) const;
 
-  /// Where line i of a face lies, i in 0 .. side, as the ratio of components: -1 to 1.
+  /// Position of line i of a face, i in 0 .. side, as a ratio of components from -1 to 1.
   double border(double i) const;
   /// Inverse of border(), not clamped to 0 .. side.
   double lineAt(double ratio) const;
@@ -45,14 +45,14 @@ class DirectionBins {
   BinMapping mapping_;
 };
 
-/// What is wanted of all bins again and again.
+/// Tables of all bins.
 struct BinTable {
   std::vector<glm::vec4> bins;  ///< xyz centre, unit length; w solid angle, sr
 
   explicit BinTable(const DirectionBins& directions);
-  /// The projected solid angle of a bin above a plane is taken as its solid angle times the cosine of its
-  /// centre, times this factor, which makes the sum over the bins on that side of the plane pi. The same for
-  /// both sides. `normal` of unit length; 0 for another one.
+  /// Factor for the projected solid angles of bins above a plane, each taken as solid angle times cosine of
+  /// the centre: with it they sum to pi. It is the same for both sides. `normal` has unit length; otherwise
+  /// the result is 0.
   float projectionScale(const glm::vec3& normal) const;
 };
 

@@ -13,15 +13,14 @@ namespace lumivox::implicit_visibility {
 struct ElementLight {
   static constexpr int kWidth = SurfaceElements::kWidth;
   gpu::TextureRef irradiance;
-  /// Of what shines, by links; null where shadow maps bring it.
+  /// Irradiance from emitters, by links; null where shadow maps supply it.
   gpu::TextureRef directIrradiance;
   gpu::TextureRef radiance;  ///< reflected, of as many bounces as reach the surface that is seen
   gpu::TextureRef emission;  ///< emitted; null like directIrradiance
-  /// What nodes with a glossy leaf reflect by their Phong lobes, beside `radiance`: a row of texels for each
-  /// of them, one for each direction of an even cube of bins (direction_bins.h). Null where nothing
-  /// passes such light on.
+  /// What nodes with a glossy leaf reflect by their Phong lobes, beside `radiance`: one row per node, one
+  /// texel per direction of an even cube of bins (direction_bins.h). Null where no node passes such light on.
   gpu::TextureRef outgoing;
-  gpu::BufferRef outgoingRows;  ///< of each node its row, kNoElement: none; null like `outgoing`
+  gpu::BufferRef outgoingRows;  ///< row of each node, kNoElement: none; null like `outgoing`
   int directions = 0;           ///< along a side of a face of the cube of directions of `outgoing`; 0: none
 
   /// Texels of a texture of radiance.

@@ -10,8 +10,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// What an element sees in a bin: another element, from which side, and how far away it is. Two words of the
-/// device.
+/// What an element sees in a bin: another element, its side and its distance. Two words on the device.
 struct ElementLink {
   static constexpr std::uint32_t kBack = 0x8000u;
   /// Bin in the lower 15 bits, then whether a disc's back is seen; upper half of the bits of the distance as
@@ -42,17 +41,17 @@ struct ElementLists {
   bool operator==(const ElementLists&) const = default;
 };
 
-/// Which elements see which (Dong, Kautz, Theobalt and Seidel 2007, Sec. 4.2). Behind create_links: the pairs
-/// of nodes that may exchange light, at both ends of each. Behind push_links: `seen`, what leaves see, and
-/// its buffers.
+/// Which elements see which (Dong, Kautz, Theobalt and Seidel 2007, Sec. 4.2). create_links makes the pairs
+/// of nodes that may exchange light, listed at both ends. push_links adds `seen`, what leaves see, and its
+/// buffers.
 struct ElementLinks {
   int bins = 0;  ///< along a side of a face of the cube of directions
   BinMapping mapping = BinMapping::even;
-  /// The partners of each node of which some leaf moves, or it itself; and those of nodes that stand still
-  /// among themselves. Null where every leaf is a partner of every other one.
+  /// Partners of each node where one end moves, and partners where both stand still. Null where every leaf is
+  /// a partner of every other one.
   std::shared_ptr<const ElementLists<std::uint32_t>> movingPartners, stillPartners;
   std::shared_ptr<const ElementLists<ElementLink>>
-      seen;  ///< of each leaf, by growing bins, a bin at most once
+      seen;  ///< for each leaf, by increasing bins, each bin at most once
   gpu::BufferRef directions, first, links;
   gpu::BufferRef lights;  ///< null where nothing emits
 };

@@ -1,4 +1,4 @@
-// Links among elements (Dong et al. 2007, Sec. 4.2; steps 5 to 7 of Algorithm 1).
+// Makes links among elements (Dong et al. 2007, Sec. 4.2; steps 5 to 7 of Algorithm 1).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 /// hierarchy: pairs of nodes as large as a bin. all_pairs: every leaf with every other one (Sec. 3.1).
 enum class Method { hierarchy, allPairs };
 
-/// On this side they are there twice while lists are joined, once more for what stands still, and as the
-/// device has them.
+/// On the host links exist twice while lists are joined and once more for still geometry; besides, the device
+/// holds them.
 void requireRoomForLinks(PassContext& frame, const ElementTree& tree, const DirectionBins& bins) {
   const std::uint64_t bytes =
       (frame.traits().movingGeometry ? 3 : 2) * sizeof(BinnedSight) + sizeof(ElementLink);
@@ -61,7 +61,7 @@ class CreateLinksPass : public Pass {
     links.bins = bins;
     links.mapping = mapping;
     const ElementTree& tree = *elements->tree;
-    // Finding pairs of so many takes minutes: what their links need is asked for at once.
+    // Finding the pairs takes minutes, so the memory of links is checked first.
     requireRoomForLinks(frame, tree, DirectionBins(bins, links.mapping));
     if (method == Method::hierarchy) {
       const PairSettings settings{DirectionBins(bins, links.mapping), split};
@@ -79,8 +79,8 @@ class CreateLinksPass : public Pass {
   }
 };
 
-/// What one side of an element sees, by bins. It is in a closed room when there is a link in every quarter of
-/// a face of the cube that is above its plane altogether.
+/// The bins that one side of an element sees. The element is in a closed room if every quarter of a face of
+/// the cube that lies wholly above its plane has a link.
 class Enclosure {
  public:
   Enclosure(const BinFinder& finder, const glm::vec3& normal, std::span<const ElementLink> seen) {
@@ -106,7 +106,8 @@ class Enclosure {
 
  private:
   struct Part {
-    std::uint32_t bins = 0, above = 0, filled = 0;  ///< above: of the element's plane; filled: of these
+    std::uint32_t bins = 0, above = 0,
+                  filled = 0;  ///< above: bins above the element's plane; filled: those of them with a link
   };
   std::array<Part, 24> quarters_;
   Part all_;
@@ -134,7 +135,7 @@ class PushLinksPass : public Pass {
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
     const Lookout lookout(tree, *elements->state, *finder, fill, push);
-    // What is clearly too much is refused before it is looked for, which takes minutes.
+    // A number that is clearly too large is refused before the search, which takes minutes.
     constexpr std::uint32_t kMany = 16384;
     if (tree.leafCount > kMany) {
       const std::uint64_t expected = lookout.estimate({pairs->stillPartners.get(), false});
@@ -172,7 +173,7 @@ class PushLinksPass : public Pass {
     links.seen = std::move(compact);
   }
 
-  /// With the sides that are seen. Nodes at one place exchange nothing.
+  /// Adds the sides that are seen. Nodes at the same place exchange no light.
   ElementLists<ElementLink> compactLinks(const ElementLists<BinnedSight>& seen) const {
     const ElementState& state = *elements->state;
     ElementLists<ElementLink> compact;

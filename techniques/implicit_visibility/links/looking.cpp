@@ -8,7 +8,7 @@
 
 namespace lumivox::implicit_visibility {
 
-/// Calls look(eye, i) for all i < count, and gathers what the eyes see then. An eye belongs to a thread.
+/// Calls look(eye, i) for all i < count and gathers what the eyes see. Each thread has an eye.
 template <class Look>
 ElementLists<BinnedSight> Lookout::collect(std::uint32_t count, const Look& look) const {
   constexpr std::uint32_t kBlock = 32;
@@ -17,7 +17,7 @@ ElementLists<BinnedSight> Lookout::collect(std::uint32_t count, const Look& look
     std::vector<std::uint32_t> counts;
   };
   std::vector<Block> blocks((count + kBlock - 1) / kBlock);
-  // As published nothing is cut: there bins of inner nodes, or single bins, have to fill the gaps.
+  // As published nothing is cut, since bins of inner nodes, or single bins, have to fill the gaps.
   const bool cutsNearby = fill_ == Fill::centre && push_ == Push::rebinned;
   tbb::enumerable_thread_specific<Eye> eyes([&] { return Eye(finder_, discs_, cutsNearby); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks.size(), 1), [&](const auto& range) {

@@ -1,4 +1,5 @@
-// What all leaves see: links of inner nodes pushed down to them (Dong et al. 2007, Sec. 4.2.3 and 4.2.4).
+// Finds what all leaves see: links of inner nodes are pushed down to them (Dong et al. 2007, Sec. 4.2.3 and
+// 4.2.4).
 #pragma once
 
 #include "element_links.h"
@@ -6,11 +7,11 @@
 
 namespace lumivox::implicit_visibility {
 
-/// How a leaf takes over the links of the nodes that it is part of. rebinned: their partners are seen anew
-/// from the leaf. kept: in the bin and at the distance in which the node saw them, as published.
+/// How a leaf takes over its ancestors' links. rebinned: the leaf sees their partners anew. kept: the leaf
+/// keeps the bin and distance in which the ancestor saw them, as published.
 enum class Push { rebinned, kept };
 
-/// Partners among what stands still, or of which one end moves.
+/// Partners that both stand still, or of which one moves.
 struct Partners {
   const ElementLists<std::uint32_t>* lists =
       nullptr;  ///< of each node; null: every leaf with every other one
@@ -22,17 +23,17 @@ class Lookout {
   Lookout(const ElementTree& tree, const ElementState& state, const BinFinder& finder, Fill fill, Push push)
       : tree_(tree), state_(state), finder_(finder), discs_(tree, state), fill_(fill), push_(push) {}
 
-  /// For each leaf and each bin the nearest of the partners of the leaf and of all nodes above it, and of
-  /// what was seen `before` (null: nothing). The same for any number of threads.
+  /// For each leaf and bin, the nearest among the partners of the leaf and its ancestors and among what was
+  /// seen `before` (null: nothing). The result does not depend on the number of threads.
   ElementLists<BinnedSight> look(const Partners& partners, const ElementLists<BinnedSight>* before) const;
-  /// About how many links that makes, from what some of the leaves see.
+  /// Estimates the number of these links from what some of the leaves see.
   std::uint64_t estimate(const Partners& partners) const;
 
  private:
   void lookFrom(Eye& eye, std::uint32_t leaf, const Partners& partners,
                 const ElementLists<BinnedSight>& inner) const;
   void seeAllLeaves(Eye& eye, std::uint32_t leaf, bool moving) const;
-  /// Of each node above the leaves: what it sees of its own partners alone.
+  /// For each node above the leaves, what it sees of its own partners.
   ElementLists<BinnedSight> lookFromInner(const Partners& partners) const;
   template <class Look>
   ElementLists<BinnedSight> collect(std::uint32_t count, const Look& look) const;

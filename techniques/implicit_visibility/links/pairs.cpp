@@ -17,7 +17,7 @@ namespace {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Walks over pairs of nodes, from the root with itself downwards.
+/// Walks down over pairs of nodes, beginning with the root paired with itself.
 class PairWalk {
  public:
   PairWalk(const ElementTree& tree, const ElementState& state, const PairSettings& settings, bool moving)
@@ -29,14 +29,13 @@ class PairWalk {
         smallStep_((even_ ? 0.5f * std::numbers::pi_v<float> : 2.0f) /
                    static_cast<float>(settings.bins.side())) {}
 
-  /// Calls `link(a, b)` for every pair below, and for itself where it is no more to be split.
+  /// Calls `link(a, b)` for every pair below this one, and for this one itself if it needs no split.
   template <class Link>
   void walk(const Pair& pair, const Link& link) const {
     step(pair, link, [&](const Pair& next) { walk(next, link); });
   }
 
-  /// The pairs of the first steps, in an order of their own, so that they can be walked at the same time;
-  /// `link` as above.
+  /// The pairs of the first steps in a fixed order, to be walked in parallel; `link` as above.
   template <class Link>
   std::vector<Pair> start(const Link& link) const {
     constexpr std::size_t kEnough = 2048;
@@ -62,7 +61,7 @@ class PairWalk {
       forBoth(a, next);
       return;
     }
-    // What moves and what stands still share no group but the root: such a pair is one of moving ends alone.
+    // Moving and still objects share no group but the root. The walk over moving pairs covers such a pair.
     if (!moving_ && !still) return;
     const bool splitA = !tree_.isLeaf(a) && isLarge(a, b), splitB = !tree_.isLeaf(b) && isLarge(b, a);
     if (!splitA && !splitB) {
@@ -83,7 +82,7 @@ class PairWalk {
     }
   }
 
-  /// A node with itself: its children with themselves and with each other.
+  /// Pairs a node with itself: its children with themselves and with each other.
   template <class Next>
   void forBoth(std::uint32_t node, const Next& next) const {
     if (tree_.isLeaf(node)) return;
@@ -93,8 +92,8 @@ class PairWalk {
         if (children[k] != kNoElement) next({children[i], children[k]});
   }
 
-  /// The solid angle of bins in a direction of any length: that of a small piece of the face in the middle of
-  /// one.
+  /// The solid angle of bins in a direction of any length, taken from a small piece of the face in the middle
+  /// of a bin.
   float binSize(const glm::vec3& direction) const {
     const glm::vec3 size = glm::abs(direction);
     const float along = std::max({size.x, size.y, size.z});
@@ -108,8 +107,8 @@ class PairWalk {
     return area / (lengthSquared * std::sqrt(lengthSquared));
   }
 
-  /// Whether `node` as seen from the middle of `eye` covers more than its part of bins, or stands around it.
-  /// Discs by A cos / r^2, as if all that they are bent faced the eye; groups by their bounding sphere.
+  /// Whether `node`, seen from the middle of `eye`, covers more bins than allowed, or encloses it. Discs
+  /// count by A cos / r^2, as if their whole curvature faced the eye; groups by their bounding sphere.
   bool isLarge(std::uint32_t node, std::uint32_t eye) const {
     if (split_ == 0.0f) return true;
     const glm::vec3 direction = state_.position[node] - state_.position[eye];
@@ -130,10 +129,10 @@ class PairWalk {
   const ElementState& state_;
   float split_;
   bool moving_, even_;
-  float smallStep_;  ///< that a bin takes in the middle of a face, as the ratio of components
+  float smallStep_;  ///< size of a bin in the middle of a face, as a ratio of components
 };
 
-/// Both walks over all pairs: the first steps on one thread, the rest in parallel.
+/// Makes both walks over all pairs: the first steps on one thread, the rest in parallel.
 template <class Link>
 void walkAll(const PairWalk& walk, const Link& link) {
   const std::vector<Pair> pairs = walk.start(link);

@@ -11,21 +11,22 @@ namespace {
 
 constexpr Sight kNothing{std::numeric_limits<float>::infinity(), kNoElement};
 constexpr int kCellsPerLine = 4;
-/// Below this angle, rad, nothing counts as above a plane: rounding of coplanar discs. Of discs nearer than
-/// their radius it is that share of the radius: places are rounded, however near they are to each other.
+/// Below this angle, rad, nothing counts as above a plane, since coplanar discs are rounded. For discs nearer
+/// than their radius it is this share of the radius, since places are rounded however near they are.
 constexpr float kFlat = 1e-4f;
-/// A disc nearer than this, in its radii, is at the same place.
+/// A disc nearer than this many of its radii is at the same place.
 constexpr float kSamePlace = 1e-5f;
-/// Within so many of its radii a disc counts where its middle is, and not where its rim is.
+/// Within so many of its radii a disc counts by its middle, not by its rim.
 constexpr float kNearby = 3.0f;
-/// Discs are so much larger that rays through the corners of squares that touch do not slip between them.
+/// Discs are enlarged by this factor so that rays through the corners of touching squares do not slip between
+/// them.
 constexpr float kRounding = 1.0f + 1e-5f;
-/// Sides of polygons stand so much further out, of their radius: places and corners are rounded, and rays
+/// Sides of polygons are moved out by this share of their radius. Places and corners are rounded, and rays
 /// would slip between neighbours.
 constexpr float kSeam = 1e-4f;
 
-/// Where a disc begins and ends as seen through a face, as the ratio of the component x to the component z:
-/// planes through the eye that touch it. All of it must be before the face (z above 0).
+/// Extent of a disc seen through a face, as ratios of the components x to z: the planes through the eye that
+/// touch it. The whole disc must lie in front of the face (z above 0).
 std::pair<float, float> extent(float x, float z, float nx, float nz, float radius) {
   const float r2 = radius * radius;
   const float a = z * z - r2 * (1.0f - nz * nz), b = x * z + r2 * nx * nz, c = x * x - r2 * (1.0f - nx * nx);
@@ -33,7 +34,7 @@ std::pair<float, float> extent(float x, float z, float nx, float nz, float radiu
   return {(b - root) / a, (b + root) / a};
 }
 
-/// Where a ray from the eye meets a disc around `direction`; infinity: it does not.
+/// Distance at which a ray from the eye meets a disc around `direction`; infinity: it misses.
 float meetDisc(const glm::vec3& direction, const glm::vec3& normal, float radius, const glm::vec3& ray) {
   const float distance = glm::dot(normal, direction) / glm::dot(normal, ray);
   const glm::vec3 away = distance * ray - direction;
@@ -56,7 +57,7 @@ DiscTree::DiscTree(const ElementTree& tree, const ElementState& state)
     if (tree.isLeaf(i))
       outline(i, state.outline(tree, i));
     else if (flat && 2.0f * state.reach[i] * state.reach[i] < kSquare * state.area[i])
-      node.filledSquared = 0.24f * state.area[i];  // just within the circle in a square
+      node.filledSquared = 0.24f * state.area[i];  // just within a square's inscribed circle
   }
 }
 
@@ -135,7 +136,7 @@ int BinFinder::firstMiddle(float ratio) const {
   const auto cells = static_cast<int>(firstOfCell_.size());
   const int cell = static_cast<int>(0.5f * (ratio + 1.0f) * static_cast<float>(cells));
   int line = firstOfCell_[static_cast<std::size_t>(std::clamp(cell, 0, cells - 1))];
-  // The cell's lower end may have been rounded to the other side.
+  // Rounding may have moved the cell's lower end past the line.
   while (line > 0 && middle(line - 1) >= ratio) --line;
   while (line < bins_.side() && middle(line) < ratio) ++line;
   return line;
@@ -165,14 +166,14 @@ void Eye::see(std::uint32_t node, Fill fill) {
   seen.radius = radius;
   if (hasPlane_) {
     const float height = glm::dot(normal_, seen.direction), flat = kFlat * std::max(seen.distance, radius);
-    // Most are on one side altogether, which needs no square root to know.
+    // Most lie on one side entirely, which takes no square root to find out.
     const float above = seen.disc.isSphere() || std::abs(height) > radius
                             ? radius
                             : radius * glm::length(glm::cross(normal_, seen.normal));
     seen.front = height + above > flat;
     seen.back = height - above < -flat;
-    // Near by, what sticks out of a disc over its element's edge is no part of a surface that falls away
-    // behind a convex one.
+    // Nearby, the part of a disc beyond its element's edge is not part of a surface that falls away behind a
+    // convex edge.
     if (cutsNearby_ && !seen.disc.isSphere() && seen.distance < kNearby * radius) {
       seen.front = seen.front && height > flat;
       seen.back = seen.back && height < -flat;
@@ -181,7 +182,7 @@ void Eye::see(std::uint32_t node, Fill fill) {
   }
   if (seen.disc.isSphere()) {
     seen.normal = seen.direction / seen.distance;
-    // Of the disc through the middle of a sphere that hides all of it; around the eye it hides everything.
+    // The disc through a sphere's middle that hides all of it; around the eye it hides everything.
     const float sine = std::min(radius / seen.distance, 1.0f);
     seen.radius = sine < 1.0f ? radius / std::sqrt(1.0f - sine * sine) : kNothing.distance;
   }
@@ -196,7 +197,7 @@ void Eye::see(std::uint32_t node, Fill fill) {
 
 void Eye::rasterise(const Seen& seen) {
   for (int axis = 0; axis < 3; ++axis) {
-    // The bounding sphere is beside the face on one of its sides, or behind it.
+    // The bounding sphere lies beside the face or behind it.
     const float along = seen.direction[axis], beside = std::max(std::abs(seen.direction[(axis + 1) % 3]),
                                                                 std::abs(seen.direction[(axis + 2) % 3]));
     if (beside - seen.radius > std::abs(along) + seen.radius) continue;

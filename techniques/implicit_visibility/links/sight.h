@@ -1,4 +1,4 @@
-// What an element sees in each bin of directions: the nearest disc (Dong et al. 2007, Sec. 3 and 4.2).
+// Finds what an element sees in each bin of directions: the nearest disc (Dong et al. 2007, Sec. 3 and 4.2).
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace lumivox::implicit_visibility {
 
-/// Which bins a disc takes. centre: those whose middle ray meets it. one: that of its middle, whatever its
+/// Which bins a disc takes. centre: those whose middle ray meets it. one: the bin of its middle, whatever its
 /// size, as published.
 enum class Fill { centre, one };
 
-/// Nodes as they are seen: the polygons or discs of leaves. An inner node is what its leaves are, in a disc
-/// (where it is flat) or a sphere around all of them.
+/// Nodes as eyes see them: the polygons or discs of leaves. An inner node consists of its leaves within a
+/// disc (where it is flat) or a sphere around them.
 class DiscTree {
  public:
   DiscTree(const ElementTree& tree, const ElementState& state);
@@ -24,16 +24,15 @@ class DiscTree {
     glm::vec3 position{0.0f};
     float radius = 0.0f;         ///< m: of the disc or sphere, which holds a leaf's polygon
     glm::vec3 normal{0.0f};      ///< unit length; 0: a sphere
-    float filledSquared = 0.0f;  ///< m^2: square of a radius within which there is no hole
+    float filledSquared = 0.0f;  ///< square of a radius without holes inside, m^2
     bool isSphere() const { return normal == glm::vec3(0.0f); }
   };
   bool isLeaf(std::uint32_t node) const { return tree_.isLeaf(node); }
   const Node& operator[](std::uint32_t node) const { return nodes_[node]; }
-  /// Whether a point in the plane of a leaf, within its radius, lies in its outline. `away`: from its
+  /// Whether a point in a leaf's plane and within its radius lies in its outline. `away`: relative to its
   /// position.
   bool covers(std::uint32_t leaf, const glm::vec3& away) const;
-  /// How far a ray of unit length from `eye` goes until it meets a leaf of an inner node; infinity: it meets
-  /// none.
+  /// Distance from `eye` along a ray of unit length to a leaf of an inner node; infinity: it meets none.
   float distanceTo(std::uint32_t node, const glm::vec3& eye, const glm::vec3& ray) const;
 
  private:
@@ -41,13 +40,13 @@ class DiscTree {
 
   const ElementTree& tree_;
   std::vector<Node> nodes_;
-  /// Of the sides of leaves that are polygons, as ElementTree::firstCorner: xyz the way out, of unit length
-  /// in the leaf's plane; w its distance from the leaf's position, m.
+  /// Sides of leaves that are polygons, indexed like ElementTree::firstCorner: xyz the outward normal in the
+  /// leaf's plane, of unit length; w its distance from the leaf's position, m.
   std::vector<glm::vec4> sides_;
 };
 
-/// What is nearest in a bin. Ordered by distance, then by node, so that the nearest of many does not depend
-/// on the order in which they come.
+/// The nearest node in a bin. Ordered by distance, then by node, so that the result does not depend on the
+/// order of visits.
 struct Sight {
   float distance;
   std::uint32_t node;
@@ -62,14 +61,14 @@ struct BinnedSight {
   bool operator==(const BinnedSight&) const = default;
 };
 
-/// Bins with tables for quick access, the same for all eyes.
+/// Tables for quick access to bins, the same for all eyes.
 class BinFinder {
  public:
   explicit BinFinder(const DirectionBins& bins);
   const DirectionBins& bins() const { return bins_; }
   const BinTable& table() const { return table_; }
   glm::vec3 centre(std::uint32_t bin) const { return glm::vec3(table_.bins[bin]); }
-  /// The first line of bins whose middle is at this ratio of components or beyond; side() when there is none.
+  /// The first line of bins whose middle is at or beyond this ratio of components; side() if there is none.
   int firstMiddle(float ratio) const;
   float middle(int line) const { return middles_[static_cast<std::size_t>(line)]; }
 
@@ -77,24 +76,24 @@ class BinFinder {
   DirectionBins bins_;
   BinTable table_;
   std::vector<float> middles_;
-  std::vector<int> firstOfCell_;  ///< of even cells of the ratios -1 to 1
+  std::vector<int> firstOfCell_;  ///< for equal cells of the ratios -1 to 1
 };
 
-/// The bins of one eye after another.
+/// The bins of one eye; reused for the next.
 class Eye {
  public:
-  /// `cutsNearby`: an eye on a plane does not see what only sticks out above it of discs near by, whose
-  /// middle is below it: discs reach over the edges of their elements, and a convex edge would shade its own
+  /// `cutsNearby`: an eye on a plane does not see nearby discs whose middle lies below it and that only stick
+  /// out above it. Discs reach over the edges of their elements, and a convex edge would shade its own
   /// surface.
   Eye(const BinFinder& finder, const DiscTree& discs, bool cutsNearby);
 
-  /// Empties all bins. An eye on a plane (a leaf) sees in the bins of a side what reaches above its plane
-  /// there, and one without normal (an inner node) in all.
+  /// Empties all bins. An eye on a plane (a leaf) sees what reaches above its plane on either side; one
+  /// without normal (an inner node) sees everything.
   void open(const glm::vec3& position, const glm::vec3& normal);
-  /// A disc: what is at the eye's place is not seen.
+  /// Enters a node, unless it is at the eye's place.
   void see(std::uint32_t node, Fill fill);
   void see(const BinnedSight& seen) { offer(seen.bin, seen.sight); }
-  /// By growing bins.
+  /// Appends what is seen, by increasing bins.
   void collect(std::vector<BinnedSight>& seen) const;
 
  private:
@@ -108,7 +107,7 @@ class Eye {
   };
   void rasterise(const Seen& seen);
   void rasteriseFace(const Seen& seen, int axis, float side);
-  /// How far the middle ray of a bin goes until it meets the node; infinity: it does not.
+  /// Distance along the middle ray of a bin to the node; infinity: it misses.
   float meet(const Seen& seen, const glm::vec3& ray, float nearest) const;
   void offer(std::uint32_t bin, const Sight& sight);
 

@@ -1,4 +1,4 @@
-// Places by cubic cells in a hash table: what is near a place.
+// Finds nearby places by cubic cells in a hash table.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace lumivox::virtual_area_lights {
 
 class NearPlaces {
  public:
-  /// The places stay where they are. Cells have `width` m.
+  /// The places must outlive this. Cells are `width` m wide.
   NearPlaces(std::span<const glm::vec3> places, float width) : places_(places), inverse_(1.0f / width) {
     buckets_ = std::bit_ceil(static_cast<std::uint32_t>(std::max<std::size_t>(places.size(), 1)));
     first_.assign(std::size_t{buckets_} + 1, 0);
@@ -57,7 +57,7 @@ class NearPlaces {
   };
 
   glm::ivec3 cellOf(const glm::vec3& place) const {
-    // Beyond these a float tells no more than every thousandth cell.
+    // Beyond this a float resolves only every thousandth cell.
     constexpr float kMost = 0x1p30f;
     return glm::ivec3(glm::clamp(glm::floor(place * inverse_), -kMost, kMost));
   }

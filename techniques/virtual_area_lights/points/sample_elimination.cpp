@@ -9,8 +9,8 @@
 namespace lumivox::virtual_area_lights {
 namespace {
 
-/// The most crowded sample first; of equals the later one. Each knows where it stands, so that it can move
-/// down.
+/// A heap with the most crowded sample first, the later one among equals. Each sample knows its position, so
+/// that it can move down.
 class CrowdingHeap {
  public:
   explicit CrowdingHeap(std::vector<float> crowding)
@@ -58,7 +58,7 @@ class CrowdingHeap {
   std::vector<std::size_t> at_;
 };
 
-/// How much two samples crowd each other, and from which distance on not at all.
+/// How much two samples crowd each other, and the distance where crowding ends.
 class Crowding {
  public:
   Crowding(const SurfaceCandidates& candidates, std::span<const int> weights, std::size_t most)

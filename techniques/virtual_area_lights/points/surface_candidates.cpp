@@ -12,8 +12,8 @@
 namespace lumivox::virtual_area_lights {
 namespace {
 
-/// Whether each edge of a component is passed as often one way as the other, so that all its triangles face
-/// the same way.
+/// Whether each edge of a component is passed as often in one direction as in the other, so that all its
+/// triangles face the same way.
 bool facesOneWay(const WeldedObject& object, const SurfaceComponent& component) {
   struct Side {
     std::uint32_t low, high;
@@ -40,7 +40,7 @@ bool facesOneWay(const WeldedObject& object, const SurfaceComponent& component) 
   return true;
 }
 
-/// For each triangle of an object how many sides of it count.
+/// For each triangle of an object, the number of its sides that count.
 std::vector<int> sidesOf(const WeldedObject& object) {
   std::vector<int> sides(object.triangleCount(), 0);
   for (const SurfaceComponent& component : surfaceComponents(object)) {
@@ -103,7 +103,7 @@ SurfaceCandidates candidatesOn(const Scene& scene, const std::vector<Facet>& fac
     before += facet.area;
     const bool isLast = f + 1 == facets.size();
     const auto [a, b, c] = placedCorners(scene, facet.object, facet.triangle);
-    // A mirroring placement turns the winding around; the front side stays with the surface.
+    // A mirroring placement reverses the winding; the front side stays with the surface.
     const double side =
         glm::determinant(glm::dmat3(scene.objects[facet.object].placement)) < 0.0 ? -1.0 : 1.0;
     const glm::vec3 normal(side * glm::normalize(glm::cross(b - a, c - a)));
@@ -112,7 +112,7 @@ SurfaceCandidates candidatesOn(const Scene& scene, const std::vector<Facet>& fac
                  shiftY = static_cast<double>(random.uniform());
     for (int i = 0; next < count && (isLast || (static_cast<double>(next) + 0.5) * made.area < before);
          ++i, ++next) {
-      // Even over the triangle: the square's rows become lines to a corner.
+      // Uniform over the triangle: rows of the square become lines to a corner.
       const auto [x, y] = r2Point(i);
       const double root = std::sqrt(1.0 - std::fmod(x + shiftX, 1.0)),
                    third = root * std::fmod(y + shiftY, 1.0);

@@ -8,7 +8,7 @@
 namespace lumivox::virtual_area_lights {
 namespace {
 
-/// An object's vertices at a moment.
+/// An object's vertices at a time.
 class MovedObject {
  public:
   MovedObject(const Scene& scene, const SceneSnapshot& snapshot, std::size_t object)
@@ -28,8 +28,8 @@ class MovedObject {
       return glm::vec3(glm::dmat3(object_->placement) * glm::dvec3(scene_->positions[vertex]));
     });
   }
-  /// Along the front side's normal. A mirroring placement turns the winding around; the front side stays with
-  /// the surface.
+  /// Vector along the front side's normal. A mirroring placement reverses the winding; the front side stays
+  /// with the surface.
   glm::vec3 frontOf(const std::array<glm::vec3, 3>& corners) const {
     return side_ * glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   }
@@ -61,7 +61,7 @@ class MovedObject {
   float side_;
 };
 
-/// By how much lengths in a triangle have grown at most, and its area.
+/// The largest growth of lengths in a triangle, and the growth of its area.
 struct Stretch {
   float length = 1.0f, area = 1.0f;
   Stretch() = default;
@@ -70,7 +70,7 @@ struct Stretch {
     const double was = before.determinant();
     if (!(was > 0.0)) return;
     const double squared = after.determinant() / was;
-    // The larger eigenvalue of what takes squares of lengths at rest to those of now.
+    // The larger eigenvalue of the matrix that maps squared lengths at rest to those of now.
     const double half =
         0.5 * (before.second * after.first - 2.0 * before.mixed * after.mixed + before.first * after.second) /
         was;
@@ -120,7 +120,7 @@ SurfacePointState stateOf(const SurfacePointSet& set, const Scene& scene, const 
 
 namespace {
 
-/// Calls `visit(index of a cell)` for the cells of which some is within a point's reach.
+/// Calls `visit(index of a cell)` for the cells that a point's reach touches.
 template <class Visit>
 void forEachCell(const GridPlacement& grid, const glm::vec3& position, float reach, Visit&& visit) {
   const glm::vec3 centre = (position - grid.low) / grid.voxelSize;
@@ -130,7 +130,7 @@ void forEachCell(const GridPlacement& grid, const glm::vec3& position, float rea
   };
   const glm::ivec3 low = cellOf(centre - radius, grid.resolution),
                    high = cellOf(centre + radius, grid.resolution);
-  // From the point to the nearest place of a cell along an axis.
+  // Distance from the point to the nearest place of a cell along an axis.
   const auto away = [](float at, int cell) {
     const auto side = static_cast<float>(cell);
     return std::max({side - at, at - side - 1.0f, 0.0f});
@@ -149,7 +149,7 @@ void forEachCell(const GridPlacement& grid, const glm::vec3& position, float rea
     }
 }
 
-/// Cells about as wide as points are apart, and wider where many lists would become long.
+/// Cells about as wide as points are apart, and wider where lists would become long.
 GridPlacement placementOf(const SurfacePointSet& set, const SurfacePointState& state) {
   Bounds bounds;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -162,7 +162,8 @@ GridPlacement placementOf(const SurfacePointSet& set, const SurfacePointState& s
     double sum = 0.0;
     const glm::dvec3 cells = cellsOf(size);
     for (const float reach : state.reach) {
-      // A ball at a random place touches as many cells as a cell that is grown by it all around has volume.
+      // A ball at a random place touches on average as many cells as the volume of a cell grown by the ball,
+      // in cells.
       const double radius = static_cast<double>(reach) / size;
       const double touched = 1.0 + radius * (6.0 + std::numbers::pi * radius * (3.0 + 4.0 / 3.0 * radius));
       const glm::dvec3 along = glm::min(glm::dvec3(2.0 * radius + 1.0), cells);
@@ -172,7 +173,7 @@ GridPlacement placementOf(const SurfacePointSet& set, const SurfacePointState& s
   };
   double size = set.spacing();
   const double longest = std::max({extent.x, extent.y, extent.z});
-  // Below a hundred thousandth of the whole a cell's border is lost in rounding.
+  // Rounding loses a cell's border below a hundred thousandth of the whole.
   size = std::max(size, 1e-5 * longest);
   const auto most = [](std::uint64_t number) { return static_cast<double>(number); };
   for (;; size *= 1.1) {

@@ -14,11 +14,11 @@
 namespace lumivox::virtual_area_lights {
 namespace {
 
-/// From this cosine on normals face alike; less is across an edge. kAlikeCosine of
+/// Normals face alike from this cosine on; below it they lie across an edge. kAlikeCosine of
 /// shaders/virtual_area_lights/surface_points.glsl.
 constexpr float kAlikeCosine = 0.05f;
 
-/// The points among `candidates` of one model, with what belongs to each of them.
+/// The points among `candidates` of one model, and the candidates that belong to each of them.
 class ModelPoints {
  public:
   ModelPoints(const std::vector<Facet>& facets, const SurfaceCandidates& candidates, std::uint32_t model,
@@ -38,10 +38,10 @@ class ModelPoints {
     }
   }
 
-  /// Each candidate belongs to the nearest point on its side, and is in the reach of its nearest ones.
+  /// Each candidate belongs to the nearest point on its side and lies in the reach of its nearest ones.
   std::vector<SurfacePoint> measured(int neighbours, double spacing, double farthest) {
     const NearPlaces near(positions_, static_cast<float>(1.5 * spacing));
-    // Within which of a candidate every place has one, but for few.
+    // Nearly every place has a candidate within this distance.
     const auto beside = static_cast<float>(0.5 * spacing);
     for (std::uint32_t c = 0; c < candidates_.places.size(); ++c)
       for (int side = 0; side < facets_[candidates_.facets[c]].sides; ++side)
@@ -57,13 +57,13 @@ class ModelPoints {
   void measure(const NearPlaces& near, const glm::vec3& place, const glm::vec3& normal,
                std::size_t neighbours, double spacing, double farthest, float beside) {
     const auto most = static_cast<float>(farthest);
-    // A little beyond where the last of them is to be expected on a plane.
+    // A little beyond the expected distance of the last of them on a plane.
     const double expected = spacing * std::sqrt(static_cast<double>(neighbours) * std::numbers::inv_pi);
     float radius = std::min(static_cast<float>(1.2 * expected) + 2.0f * beside, most);
     find(near, place, normal, radius);
     while (found_.size() < neighbours && radius < most)
       find(near, place, normal, radius = std::min(1.5f * radius, most));
-    // However far the nearest one is.
+    // Widens the search until one is found.
     while (found_.empty() && radius < std::numeric_limits<float>::max())
       find(near, place, normal, radius = std::min(2.0f * radius, std::numeric_limits<float>::max()));
     if (found_.empty()) return;
@@ -71,7 +71,7 @@ class ModelPoints {
     SurfacePoint& owner = points_[nearest.second];
     owner.area += static_cast<float>(candidates_.area);
     owner.radius = std::max(owner.radius, std::sqrt(nearest.first));
-    // From a place up to `beside` away no distance, that of the last neighbour included, differs by more.
+    // From a place up to `beside` away no distance differs by more, not even that of the last neighbour.
     float last = most;
     if (found_.size() >= neighbours) {
       std::nth_element(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(neighbours) - 1,
@@ -93,8 +93,8 @@ class ModelPoints {
     return glm::dot(normals_[number], normal) >= kAlikeCosine;
   }
 
-  /// On a narrow face the nearest points may all lie across its edges: the nearest that faces alike reaches
-  /// there too.
+  /// On a narrow face the nearest points may all lie across its edges. The nearest point that faces alike
+  /// reaches there, too.
   void reachAlike(const NearPlaces& near, const glm::vec3& place, const glm::vec3& normal, float most,
                   float beside) {
     find(near, place, normal, most);
@@ -136,16 +136,16 @@ bool hasMask(const Scene& scene, const std::vector<Facet>& facets) {
   });
 }
 
-/// Candidates for each model, as dense on all of them, and what they cover.
+/// Candidates of equal density for each model, and the areas that they cover.
 struct Drawn {
   std::vector<SurfaceCandidates> candidates;
   std::vector<double> covered;  ///< by sides with candidates, m^2
   double area = 0.0;            ///< sum of `covered`
 };
 
-/// `area`: of sides, m^2, for which there are kCandidatesPerPoint a point.
+/// `area` of sides, m^2, that gets kCandidatesPerPoint candidates per point.
 Drawn draw(const Scene& scene, const std::vector<std::vector<Facet>>& models, int points, double area) {
-  constexpr double kFewest = 16.0;  // so that a small model's places are not all at its first triangles
+  constexpr double kFewest = 16.0;  // so that places on a small model are not all on its first triangles
   Drawn drawn;
   for (const std::vector<Facet>& facets : models) {
     drawn.covered.push_back(0.0);
@@ -184,14 +184,14 @@ SurfacePointSet spreadSurfacePoints(const Scene& scene, const SurfacePointSettin
   SurfacePointSet set;
   if (!(area > 0.0)) return set;
   Drawn drawn = draw(scene, models, settings.points, area);
-  // Where holes took many of them, again as many more; but not without bound, where next to nothing is left.
+  // Where holes took many candidates, draws as many more; bounded, since next to nothing may be left.
   constexpr double kMostHoles = 0.9;
   if (masked && drawn.area > 0.0)
     drawn = draw(scene, models, settings.points, std::max(drawn.area, (1.0 - kMostHoles) * area));
   if (!(drawn.area > 0.0)) return set;
   set.area = drawn.area;
   const double spacing = std::sqrt(drawn.area / settings.points);
-  // Twice and a half as far as the last neighbour on a plane: beyond that nothing is told of a place.
+  // Two and a half times as far as the last neighbour on a plane; farther points say nothing about a place.
   set.farthest = spacing * (1.0 + 2.5 * std::sqrt(settings.neighbours * std::numbers::inv_pi));
   double before = 0.0;  // of the models so far
   for (std::uint32_t model = 0; model < models.size(); ++model) {

@@ -18,13 +18,13 @@ struct SurfacePoints {
   GridPlacement grid;
   gpu::BufferRef cells, candidates;
   int count = 0;
-  int neighbours = 0;     ///< that the grid was made for: at most so many are found
+  int neighbours = 0;     ///< number of neighbours that the grid was made for: at most so many are found
   float spacing = 0.0f;   ///< m: side of the square that a point stands for, in the mean, at rest
   float farthest = 0.0f;  ///< m: how far away neighbours are sought; the nearest one may be farther
   std::shared_ptr<const SurfacePointSet> set;
   std::shared_ptr<const SurfacePointState> state;
 
-  /// Texels of a texture with a value for each of so many points.
+  /// Size of a texture with a texel for each of so many points.
   static glm::ivec2 sizeFor(int points) { return {kWidth, std::max((points + kWidth - 1) / kWidth, 1)}; }
 };
 

@@ -47,7 +47,7 @@ SeenLight overTriangles(PassContext& frame, const VertexInputs& inputs, const gp
 
 SeenLight diffuseOverTriangles(PassContext& frame, const VertexInputs& inputs, const gpu::TextureRef& lights,
                                const gpu::TextureRef& places) {
-  // It does not look at the camera.
+  // It does not depend on the camera.
   return overTriangles(frame, inputs, frame.kept("diffuse light of vertices", lights, [&] {
     return atVertices(frame, inputs, interpolate_vertices::Variant::lobeDiffuse, lights, places);
   }));

@@ -13,8 +13,8 @@ struct VertexInputs {
   const GBuffer& gbuffer;
   const SurfacePoints& points;
   const VertexPoints& vertices;
-  bool plain;      ///< what points reflect in place of their lights
-  bool published;  ///< Eq. 13 as printed of glossy lights too
+  bool plain;      ///< takes what points reflect in place of their lights
+  bool published;  ///< applies Eq. 13 as printed to glossy lights, too
 };
 
 /// The averaged light of points, mixed at the vertices of all meshes and interpolated over the triangles that

@@ -10,8 +10,7 @@
 namespace lumivox::virtual_area_lights {
 namespace {
 
-/// Vertices where nothing has moved yet, relative to one of them, so that nothing is lost far from the
-/// origin.
+/// Vertices at rest, relative to one of them, which keeps precision far from the origin.
 class AtRest {
  public:
   explicit AtRest(const Scene& scene) : scene_(scene) {
@@ -52,7 +51,7 @@ class AtRest {
   glm::dvec3 origin_{0.0};
 };
 
-/// The nearest of what is offered, by growing distance; of equal ones the first stays.
+/// Keeps the nearest of the offered points by increasing distance; among equals the first stays.
 class NearestList {
  public:
   explicit NearestList(int most) : most_(static_cast<std::size_t>(most)) {}
@@ -68,7 +67,7 @@ class NearestList {
                   {distanceSquared, point});
     if (found_.size() == most_) farthest_ = found_.back().first;
   }
-  /// None farther than `farthest`, unless it is the only one.
+  /// Leaves out points beyond `farthest`, unless there is only one.
   void append(std::vector<std::uint32_t>& to, double farthest) const {
     for (std::size_t i = 0; i < most_; ++i) {
       const bool counts =
@@ -88,8 +87,8 @@ struct SideLists {
   NearestList any, glossy;
 };
 
-/// The material of every vertex, -1 for those of no triangle; of one that parts share the first glossy one's,
-/// since a vertex has one glossy light.
+/// The material of every vertex, -1 without a triangle. A vertex shared by parts has the first glossy
+/// material, since it has one glossy light.
 std::vector<int> materialsOfVertices(const Scene& scene) {
   std::vector<int> materials(scene.positions.size(), -1);
   for (const Object& object : scene.objects)

@@ -8,15 +8,15 @@
 
 namespace lumivox::virtual_area_lights {
 
-/// The nearest points of every vertex of a scene, found once, at rest: what is rigid keeps them, and what
-/// deforms refers to those that were near.
+/// The nearest points of every vertex of a scene, found once, at rest. Rigid objects keep them; deforming
+/// objects refer to those that were near at rest.
 struct VertexNeighbours {
   static constexpr std::uint32_t kNone = 0xffffffff;
   int sides = 1;  ///< of a vertex; 1: no surface has points on its back
-  /// `neighbours` for each side of each vertex, the nearest first, kNone behind the last: of the vertex's
-  /// model and on that side.
+  /// For each side of each vertex `neighbours` points of its model on that side, the nearest first, kNone
+  /// behind the last.
   std::vector<std::uint32_t> any;
-  std::vector<std::uint32_t> glossy;  ///< the same of points that reflect by the vertex's exponent
+  std::vector<std::uint32_t> glossy;  ///< the same for points that reflect by the vertex's exponent
 };
 VertexNeighbours neighboursOfVertices(const Scene& scene, const SurfacePointSet& set, int neighbours);
 

@@ -1,4 +1,4 @@
-// The sparse points that each vertex refers to, found in advance (Lensing and Broll 2013, Sec. 3.2 step 3).
+// Finds in advance the sparse points that each vertex refers to (Lensing and Broll 2013, Sec. 3.2 step 3).
 #include <algorithm>
 #include <vector>
 

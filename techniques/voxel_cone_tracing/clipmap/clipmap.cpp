@@ -1,5 +1,5 @@
-// Levels of voxels around the camera, of which only what the camera uncovers is filled anew: thesis Gomes
-// 2015, Sec. 3.5 (VXGI); Tanner et al. 1998.
+// Levels of voxels around the camera; only what the camera uncovers is filled anew: thesis Gomes 2015, Sec.
+// 3.5 (VXGI); Tanner et al. 1998.
 #include "clipmap.h"
 
 #include <fmt/format.h>
@@ -53,7 +53,7 @@ struct ClipmapStack {
   glm::ivec3 size() const { return {side, side * rows, side * row}; }
 };
 
-/// What the voxels were lit by: resources that are held, so that no others can take their place unseen.
+/// What lit the voxels. The resources are held, so that no others can take their addresses unnoticed.
 struct LitBy {
   LightPlacement lights;
   std::vector<std::shared_ptr<const void>> media;
@@ -61,17 +61,17 @@ struct LitBy {
   bool operator==(const LitBy&) const = default;
 };
 
-/// What is carried from frame to frame: the voxels, and of what they are.
+/// State carried from frame to frame: the voxels and their origin.
 struct ClipmapState {
   RadianceClipmap clipmap;
   ClipmapPlacement placement;
   LitBy litBy;
   std::vector<std::shared_ptr<const void>> shadow;
-  std::optional<std::vector<Bounds>> moving;  ///< nothing: it cannot be told what they change
+  std::optional<std::vector<Bounds>> moving;  ///< empty: their changes are unknown
   bool filled = false;
 };
 
-/// What the levels hold as long as it stays the same.
+/// Levels stay valid as long as this key is unchanged.
 struct ClipmapKey {
   ClipmapPlacement placement;
   bool operator==(const ClipmapKey& other) const { return placement.sameVoxels(other.placement); }
@@ -105,11 +105,11 @@ class ClipmapPass : public Pass {
                                 Levels::finest};
 
   ChangeTracking changes_;
-  /// Fragments that lists are made for: a guess, or what earlier frames needed; of all levels, and of parts.
+  /// Fragments that lists hold: a guess, or what earlier frames needed; for all levels and for parts.
   std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
-  /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
+  /// Rows of tiles of large triangles that a draw may put aside; further rows are drawn directly.
   static constexpr std::uint32_t kRowCapacity = 1u << 16;
-  /// Triangles that are looked at before what is found of them is voxelized: bounds the list of it.
+  /// Triangles examined before the fragments found are voxelized; bounds their list.
   static constexpr std::uint32_t kTrianglesAtOnce = 1u << 16;
   static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
 
@@ -141,8 +141,8 @@ class ClipmapPass : public Pass {
 
   gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
 
-  /// Whether the device has room for the volumes of a layout beside all that there is. What is asked for is
-  /// given back at once, and not to the pool, where it would wait.
+  /// Whether the device has room for the volumes of a layout beside all else. The trial allocation is freed
+  /// at once, not given to the pool, where it would wait.
   bool fits(PassContext& frame, const ClipmapLayout& layout) const {
     const gpu::TextureDescription volume{.kind = gpu::TextureKind::d3,
                                          .format = format(),
@@ -160,7 +160,7 @@ class ClipmapPass : public Pass {
   }
 
   std::shared_ptr<ClipmapState> stateFor(PassContext& frame, const ClipmapPlacement& placement) const {
-    const ClipmapStack stack(resolution, levels);  // Error for more than a list can number
+    const ClipmapStack stack(resolution, levels);  // Error for more voxels than a list can number
     const ClipmapLayout layout = layoutOf(placement);
     int largest = resolution;
     if (!fits(frame, layout)) {
@@ -171,7 +171,7 @@ class ClipmapPass : public Pass {
     }
     auto state = std::make_shared<ClipmapState>();
     try {
-      // What does not fit beside what waits in the pool may be the very thing that waits.
+      // Memory waiting in the pool may be the very memory that is needed.
       for (gpu::TextureRef& face : state->clipmap.faces)
         face = frame.volume(layout.volume, format(), "clipmap of one side");
       state->clipmap.occupied =
@@ -188,7 +188,7 @@ class ClipmapPass : public Pass {
   // ---- what has changed ----------------------------------------------------------------------------------
 
   LitBy litBy(PassContext& frame) const {
-    // Nearer lights may send more than a level takes.
+    // Nearer lights may exceed what a level stores.
     LitBy result{lightPlacement(frame, light.shadow, light.brightest(frame, 1.0f)), {}, {}};
     if (light.media.present() && light.shadow.present())
       for (const ScatteringGrid::Medium& medium : light.media->media) {
@@ -203,7 +203,7 @@ class ClipmapPass : public Pass {
     return {light.shadow->depth, light.shadow->lights, light.shadow->views};
   }
 
-  /// What has to be filled anew: what the levels reach anew, and of the rest what is in changed cells.
+  /// Ranges to fill anew: newly reached voxels, and in the rest those in changed cells.
   static std::vector<LevelRange> rangesOf(const ClipmapPlacement& before, const ClipmapPlacement& placement,
                                           bool all, bool moves) {
     std::vector<LevelRange> result;
@@ -216,8 +216,8 @@ class ClipmapPass : public Pass {
     return result;
   }
 
-  /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
-  /// has left or come to, and those that lie behind it in the shadow map. Empties them.
+  /// Finds the cells that differ from the frame before, one word each (clipmap_cells.glsl): cells that a
+  /// moving object has left or entered, and cells behind it in the shadow map. Empties them.
   gpu::BufferRef emptyChangedCells(PassContext& frame, const RadianceClipmap& clipmap,
                                    const ClipmapPlacement& placement,
                                    const std::vector<Bounds>& moving) const {
@@ -245,7 +245,7 @@ class ClipmapPass : public Pass {
     std::optional<std::vector<Bounds>> moving = changes_.moving(frame);
     const bool known = state.filled && moving && state.moving && moving->size() == state.moving->size();
     const bool moves = known && !std::ranges::equal(*moving, *state.moving, sameBounds);
-    // Another shadow map is that of what moves, or nothing is known of it.
+    // Without a known motion another shadow map changes everything.
     const bool all = !known || lit != state.litBy || (shadow != state.shadow && !moves);
     const std::vector<LevelRange> ranges = rangesOf(state.placement, placement, all, moves && !all);
     std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
@@ -285,7 +285,7 @@ class ClipmapPass : public Pass {
     }
   }
 
-  /// What the port says of the levels.
+  /// Describes the levels in the port.
   void place(PassContext& frame, RadianceClipmap& result, const ClipmapPlacement& placement) const {
     result.origin = placement.origin;
     result.voxelSize = placement.voxelSize;
@@ -296,7 +296,7 @@ class ClipmapPass : public Pass {
   }
 
   float brightestOf(PassContext& frame, const ClipmapPlacement& placement, int level) const {
-    // A level cannot say anything of what lies nearer than half a voxel.
+    // A level does not resolve anything nearer than half a voxel.
     return light.brightest(frame, 0.5f * std::ldexp(placement.voxelSize, level));
   }
 
@@ -322,8 +322,8 @@ class ClipmapPass : public Pass {
     const ClipmapStack stack(placement.resolution, placement.levels());
     const shader::BindingSet stackBound = stackBinding(frame, placement, stack);
     if (room == 0) {
-      // Surfaces fill about as many voxels of a level as six of its sides, twice where they lie between two
-      // layers, and slabs are a small part of it.
+      // Surfaces fill about as many voxels of a level as its six sides, twice as many between two layers;
+      // slabs are a small part of them.
       const auto side = static_cast<std::uint64_t>(placement.resolution);
       const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
       room = 12 * side * side * static_cast<std::uint64_t>(placement.levels()) +
@@ -359,7 +359,7 @@ class ClipmapPass : public Pass {
         *occupied.count, OccupiedBricks::argumentsBytes(0));
   }
 
-  /// All ranges at once, a draw at a time.
+  /// Voxelizes all ranges at once, draw by draw.
   void voxelize(PassContext& frame, const VoxelFragments& list, const gpu::BufferRef& sideMasks,
                 const shader::BindingSet& stack, const std::vector<LevelRange>& ranges,
                 const gpu::BufferRef& changedCells) const {
@@ -426,7 +426,7 @@ class ClipmapFilterPass : public Pass {
                             "the same levels; inside the next finer level, their voxels come from its voxels",
                             Levels::all};
 
-  /// The change up to which the blocks of these volumes are made.
+  /// The change up to which the blocks of these volumes are current.
   struct Made {
     gpu::BufferRef of;
     std::uint64_t number = 0;
@@ -447,7 +447,7 @@ class ClipmapFilterPass : public Pass {
     madeAnew->clear();
     std::optional<ReadCells> read;
     if (!all && result.change.cells != nullptr && stays(result)) read.emplace(frame, result);
-    // What differs from before, as it is read, lies in these, level by level.
+    // Bounds of the differences as they are read, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
     for (int level = 1; level < count; ++level) {
@@ -458,11 +458,11 @@ class ClipmapFilterPass : public Pass {
       const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
       VoxelRange touched = coarserTouching(changed);
       if (!above) touched = touched.around(result.change.voxelized[i]);
-      // Where the finer level has moved its border has, and with it the ramp.
+      // A moved finer level also moves its border, and with it the ramp.
       const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
       changed = anew ? touched.around(block.voxels) : touched;
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
-      // Of the first level above those around the camera it is known, too.
+      // This is also known for the first level above those around the camera.
       const bool listed = read && level <= result.around;
       if (listed) read->find(frame, result, level);
       make(frame, result, lists, madeAnew, listed ? &read->lists : nullptr, level,
@@ -472,7 +472,7 @@ class ClipmapFilterPass : public Pass {
     mips = result;
   }
 
-  /// Voxels of the largest block that is made.
+  /// Number of voxels of the largest block to be made.
   static std::uint64_t largestMade(const RadianceClipmap& clipmap) {
     std::uint64_t result = 0;
     for (std::size_t level = 1; level < clipmap.levels.size(); ++level) {
@@ -484,7 +484,7 @@ class ClipmapFilterPass : public Pass {
     return result;
   }
 
-  /// While no level moves, the cells in which what is read differs from before, listed level by level.
+  /// While no level moves, the cells whose read values differ from before, listed level by level.
   struct ReadCells {
     std::uint64_t cells;
     gpu::BufferRef flags;
@@ -505,7 +505,7 @@ class ClipmapFilterPass : public Pass {
     }
   };
 
-  /// Of a level what differs in these voxels.
+  /// Makes the differing part of a level within these voxels.
   static void make(PassContext& frame, const RadianceClipmap& clipmap, const ItemLists& lists,
                    const gpu::BufferRef& madeAnew, const ItemLists* cells, int level, const VoxelRange& part,
                    bool all) {
@@ -540,7 +540,7 @@ class ClipmapFilterPass : public Pass {
         *lists.heads, ItemLists::argumentsBytes(i));
   }
 
-  /// What a level had.
+  /// The former block of a level.
   static clipmap_anew::Had hadOf(const RadianceClipmap::Level& level) {
     int endless = 0;  // LevelEnds::endless
     for (int axis = 0; axis < 3; ++axis) {

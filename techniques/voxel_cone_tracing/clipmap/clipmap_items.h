@@ -16,7 +16,7 @@ inline std::uint64_t cellsOfLevel(int resolution) {
   return along * along * along;
 }
 
-/// Lists of what needs work, one after another in the same memory (clipmap_items.glsl).
+/// Lists of items that need work, one after another in the same memory (clipmap_items.glsl).
 struct ItemLists {
   gpu::BufferRef heads, items;
 
@@ -30,7 +30,7 @@ struct ItemLists {
     return {shaders::voxel_cone_tracing::clipmap_anew::listHeads(heads),
             shaders::voxel_cone_tracing::clipmap_anew::listItems(items)};
   }
-  /// Where the arguments of the dispatch over a list lie in `heads`.
+  /// Byte offset in `heads` of the dispatch arguments of a list.
   static std::uint64_t argumentsBytes(std::size_t list) {
     return list * shaders::voxel_cone_tracing::clipmap_anew::listHeads.elementBytes + sizeof(std::uint32_t);
   }

@@ -1,4 +1,4 @@
-// Where the levels of a clipmap lie: thesis Gomes 2015, Sec. 3.5.1; Tanner et al. 1998.
+// Places the levels of a clipmap: thesis Gomes 2015, Sec. 3.5.1; Tanner et al. 1998.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace lumivox::voxel_cone_tracing {
 
 namespace {
 
-/// No finest voxel has a number beyond this.
+/// Largest number of a finest voxel.
 constexpr double kFarthest = 1 << 27;
 
 int halfDown(int value) {
@@ -18,7 +18,7 @@ int halfDown(int value) {
 int halfUp(int value) {
   return -halfDown(-value);
 }
-/// Of voxels that lie in these finer ones, the first or the end.
+/// First or end of the voxels that lie in these finer ones.
 glm::ivec3 halfDown(const glm::ivec3& v) {
   return {halfDown(v.x), halfDown(v.y), halfDown(v.z)};
 }
@@ -71,7 +71,7 @@ ClipmapPlacement placeClipmap(const SceneSnapshot& snapshot, int resolution, int
 ClipmapLayout layoutOf(const ClipmapPlacement& placement) {
   ClipmapLayout layout;
   const int resolution = placement.resolution, around = placement.levels();
-  // Blocks of a period, side by side as many as fit into a layer of the first ones.
+  // Blocks of one period lie side by side, as many as fit into a layer of the first ones.
   const int width = std::max(resolution + 2, 2 * ((resolution + 1) / 2 + 3));
   glm::ivec3 cursor(0);
   int layer = 0, previous = 0;
@@ -115,7 +115,7 @@ ClipmapLayout layoutOf(const ClipmapPlacement& placement) {
   for (int size = resolution; size > 1; size = (size + 1) / 2) {
     range = coarserTouching(range);
     RadianceClipmap::Level& made = layout.levels.emplace_back();
-    // One that begins at an odd voxel reaches into one more.
+    // A range that begins at an odd voxel reaches into one more.
     place(made.own, range, (size + 1) / 2 + (placement.scene.empty() ? 1 : 0));
     made.reachFirst = glm::vec3(-RadianceClipmap::kEndless);
     made.reachEnd = glm::vec3(RadianceClipmap::kEndless);

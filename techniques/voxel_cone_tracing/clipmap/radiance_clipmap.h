@@ -1,4 +1,4 @@
-// Light in a clipmap: a kind of port of this technique's own, and where its levels lie.
+// Light in a clipmap, and the placement of its levels: a kind of port of this technique's own.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct VoxelRange {
   VoxelRange within(const VoxelRange& other) const {
     return {glm::max(first, other.first), glm::min(end, other.end)};
   }
-  /// The least range that holds both.
+  /// The smallest range that contains both.
   VoxelRange around(const VoxelRange& other) const {
     if (empty()) return other;
     return other.empty() ? *this : VoxelRange{glm::min(first, other.first), glm::max(end, other.end)};
@@ -34,8 +34,8 @@ struct VoxelRange {
   static glm::ivec3 addressOf(const glm::ivec3& voxel, int period) {
     return ((voxel % period) + period) % period;
   }
-  /// What of this range lies in no voxel of `other`, in boxes without common voxels: at most six of them; the
-  /// slabs that a level uncovers when it moves on from `other`.
+  /// The part of this range outside `other`, as at most six disjoint boxes: the slabs that a level uncovers
+  /// when it moves on from `other`.
   std::vector<VoxelRange> without(const VoxelRange& other) const {
     if (empty()) return {};
     const VoxelRange common = within(other);
@@ -59,19 +59,19 @@ struct VoxelRange {
 /// origin + [i,i+1] x [j,j+1] x [k,k+1] times voxelSize 2^l, wherever the camera is, and i, j and k may be
 /// below 0.
 struct RadianceClipmap {
-  /// Voxels of a level in the volumes. Addresses repeat with a period; around each block lies a copy of the
-  /// other side's voxels, one texel thick.
+  /// Voxels of a level in the volumes. Addresses repeat with a period; a border of one texel around each
+  /// block copies the voxels of the opposite side.
   struct Block {
     VoxelRange voxels;
     glm::ivec3 texel{0};     ///< of the address (0,0,0)
-    int period = 1;          ///< voxels along each axis that there is room for
-    std::uint32_t word = 0;  ///< of `occupied`, where its bits begin
+    int period = 1;          ///< voxels along each axis with room
+    std::uint32_t word = 0;  ///< first word of its bits in `occupied`
     glm::ivec3 texelOf(const glm::ivec3& voxel) const { return texel + VoxelRange::addressOf(voxel, period); }
   };
   struct Level {
-    Block own;    ///< as voxelized; of levels above those around the camera: from the finer one
-    Block inner;  ///< what the finer level has too, blended with what it makes of it; empty: nothing
-    /// Where the level is read, in voxels: on sides beyond which the store ends there is no end.
+    Block own;    ///< as voxelized; for levels above those around the camera, from the finer one
+    Block inner;  ///< the part inside the finer level, blended with the finer one's mean; empty: none
+    /// Range where the level is read, in voxels; unbounded on the sides where the store ends.
     glm::vec3 reachFirst{0.0f}, reachEnd{0.0f};
   };
   static constexpr float kEndless = 1e30f;
@@ -80,32 +80,32 @@ struct RadianceClipmap {
   float voxelSize = 1.0f;     ///< of the finest level, m
   int around = 1;             ///< levels around the camera
   std::vector<Level> levels;  ///< finest first
-  float ramp = 0.0f;          ///< voxels over which a level goes over to what the finer one makes of it
-  float border = 1.0f;        ///< voxels of a level over which reading goes on to the next one
+  float ramp = 0.0f;          ///< voxels over which a level blends into the finer one's mean
+  float border = 1.0f;        ///< voxels of a level over which reading blends into the next one
   int filledLevels = 1;       ///< finest first
   float unit = 1.0f;          ///< W/(sr m^2): keeps very bright and very dark light within half floats
   /// By the outward normals +x, -x, +y, -y, +z and -z.
   std::array<gpu::TextureRef, 6> faces;
   gpu::BufferRef occupied;  ///< a bit for each voxel of each block
 
-  /// What filling the levels has changed in these volumes since the time before, whose number is one less.
+  /// Changes in these volumes by the last filling of levels; the one before has a number one less.
   struct Change {
     std::uint64_t number = 0;
     bool all = true;
     std::vector<VoxelRange> voxelized;  ///< by level; empty: nothing
     std::vector<Level> before;          ///< the levels then; empty where `all`
-    /// Of what was in the levels then and is still there, the cells of 4 x 4 x 4 voxels in which something
-    /// differs (clipmap_cells.glsl); null: what `voxelized` says.
+    /// Among voxels that stayed in the levels, the cells of 4 x 4 x 4 voxels with a difference
+    /// (clipmap_cells.glsl); null: as `voxelized`.
     gpu::BufferRef cells;
   };
   Change change;
 
   float sizeOf(int level) const { return voxelSize * static_cast<float>(1 << level); }
-  /// All levels that are filled are of use, and `inner` is.
+  /// Whether all filled levels, and `inner`, may be read.
   bool filtered() const { return filledLevels == static_cast<int>(levels.size()); }
 
-  /// The voxels of a level that are not empty, each once, by the value that cones read; numbers count from
-  /// the first voxel of the level. `face`: by outward normals; 6: the opacity along x, y and z.
+  /// The occupied voxels of a level, each once, with the value that cones read; numbers count from the
+  /// level's first voxel. `face`: by outward normals; 6: the opacity along x, y and z.
   std::vector<VoxelsRead::Voxel> voxels(int index, int face) const {
     const Level& level = levels[static_cast<std::size_t>(index)];
     const bool opacities = face == 6;

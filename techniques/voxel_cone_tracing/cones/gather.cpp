@@ -1,5 +1,5 @@
-// Final gathering with cones, through whichever store: Crassin et al. 2011, Sec. 7; thesis Gomes 2015,
-// Sec. 4.2.1, Listings 4.11 to 4.13.
+// Final gathering with cones through any store: Crassin et al. 2011, Sec. 7; thesis Gomes 2015, Sec. 4.2.1,
+// Listings 4.11 to 4.13.
 #include "../dense/normal_lobes.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
@@ -86,7 +86,7 @@ class GatherPass : public Pass {
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
     const gpu::TextureDescription ofSamples{
         .format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y};
-    // Without a pattern, and a sample for each pixel, there is nothing to reconstruct.
+    // Without a pattern and with a sample for each pixel there is nothing to reconstruct.
     const bool arrivingDiffuse = variant.diffuse && (every > 1 || side > 1),
                arrivingGlossy = variant.glossy && every > 1;
     const gather::Constants constants{.coneCount = cones,
@@ -120,7 +120,7 @@ class GatherPass : public Pass {
   }
 
   struct Samples {
-    gpu::TextureRef diffuse, glossy;  ///< null: none
+    gpu::TextureRef diffuse, glossy;  ///< null: not asked for
   };
   /// One pass of reconstruct.comp.
   void reconstructed(PassContext& frame, reconstruct::Parameters filter, glm::ivec2 along, bool finishes,

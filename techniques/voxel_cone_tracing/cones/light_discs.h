@@ -1,4 +1,4 @@
-// Port kind of this technique: lights with what cones to them are aimed at. GLSL side:
+// Lights and the discs that cones to them are aimed at: a kind of port of this technique's own. GLSL side:
 // shaders/voxel_cone_tracing/cones/soft_shadows.comp.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace lumivox {
 
-/// All direct light as point samples, each of which belongs to a disc: that of its light, or its own.
+/// All direct light as point samples. Each belongs to a disc: that of its light, or its own.
 struct LightDiscs {
   gpu::BufferRef lights;
   gpu::BufferRef discs;

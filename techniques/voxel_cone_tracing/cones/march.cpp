@@ -14,7 +14,7 @@ namespace gather = shaders::voxel_cone_tracing::gather;
 
 namespace {
 
-/// What every store says of itself; `block` holds the rest of the block Store.
+/// The part of the binding that all stores have; `block` holds the rest of the block Store.
 StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
   StoreBinding result;
   block.storeLow = grid.low;
@@ -72,8 +72,8 @@ StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
 
 StoreBinding storeOf(const RadianceOctree& octree, bool layers) {
   const VoxelOctree& tree = octree.tree;
-  // With the empty voxels that a dense grid has at its high ends: a wall in the last voxels is read to half a
-  // voxel of every level behind it, and a cone that ended with it would take half of the wall for open.
+  // Includes the empty voxels that a dense grid has at its high ends. A wall in the last voxels is read up to
+  // half a voxel of every level behind it; a cone that ended at the wall would take half of it for open.
   GridPlacement whole = tree.grid;
   whole.resolution = evenlyHalved(whole.resolution);
   StoreBinding result =

@@ -1,6 +1,5 @@
-// Cones through a store of light and opacity, as every pass that traces cones takes them: which store, and
-// how they step through it. GLSL side: shaders/common/cone_march.glsl and
-// shaders/voxel_cone_tracing/cones/store.glsl.
+// Cones through a store of light and opacity, for all passes that trace cones: the store, and how cones step
+// through it. GLSL side: shaders/common/cone_march.glsl and shaders/voxel_cone_tracing/cones/store.glsl.
 #pragma once
 
 #include "../clipmap/radiance_clipmap.h"
@@ -11,26 +10,26 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// The bindings of a store, and what a pass must know of it. Named by name, so that every program that
-/// includes store.glsl takes them.
+/// The bindings and properties of a store. Bindings go by name, so that every program that includes
+/// store.glsl takes them.
 struct StoreBinding : shader::BindingSet {
   int axis = 0;             ///< value of the shader's axis STORE
   int faces = 0;            ///< and of FACES
-  float length = 0;         ///< no cone need be longer, m
+  float length = 0;         ///< longest useful cone, m
   float voxel = 0;          ///< finest voxels, m
   GridPlacement grid;       ///< of the finest level
-  int bounces = 1;          ///< times that light was reflected, as far as the store says
-  bool holdsMedia = false;  ///< participating media are in the voxels
+  int bounces = 1;          ///< number of reflections of the stored light
+  bool holdsMedia = false;  ///< whether the voxels hold participating media
 };
 
 StoreBinding storeOf(const RadianceGrid& grid);
-/// By layers, or filtered along all axes.
+/// Reads by layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
-/// Of six faces by layers, or filtered along all axes.
+/// With six faces it reads by layers, or filtered along all axes.
 StoreBinding storeOf(const RadianceOctree& octree, bool layers);
 StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
-/// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
+/// How cones step through a store; each member has the meaning of ConeMarch's parameter of its name.
 struct MarchSettings {
   float step = 0.5f, offset = 1.0f, start = 1.0f, clearance = 0.5f, footprint = 0.5f, refinement = 0.5f;
   float reach = 0.0f, jitter = 0.0f;
@@ -38,11 +37,11 @@ struct MarchSettings {
   shader::BindingSet binding(const PassContext& frame, const StoreBinding& store) const;
 };
 
-/// The store that a pass reads, one of those that there are: members of the pass.
+/// The inputs for the one store that a pass reads, as members of the pass.
 class StoreInput {
  public:
   explicit StoreInput(Pass* pass);
-  /// Error where none of the inputs is connected, or more than one.
+  /// Error unless exactly one of the inputs is connected.
   StoreBinding binding() const;
 
  private:
@@ -55,7 +54,7 @@ class StoreInput {
   Param<Reading> reading_;
 };
 
-/// Steps along cones: members of a pass.
+/// The parameters of steps along cones, as members of a pass.
 class ConeMarch {
  public:
   explicit ConeMarch(Pass* pass);

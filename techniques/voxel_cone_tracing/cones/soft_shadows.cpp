@@ -19,7 +19,7 @@ struct DiscData {
   glm::vec4 centreRadius, normal;
 };
 
-/// The lights alone: what a pass needs that finds out about their visibility by itself.
+/// Makes the lights without shadow maps, for a pass that finds their visibility itself.
 class LightsPass : public Pass {
   enum class Cones { sample, light };
 
@@ -35,7 +35,7 @@ class LightsPass : public Pass {
   Needs needs() const override { return Needs::anyLight; }
 
   void run(PassContext& frame) override {
-    constexpr int kNoShadow = 1;  // texels along a side of the views, which nothing draws
+    constexpr int kNoShadow = 1;  // texels along a side of the views, which are never drawn
     LightSet set = sampleLights(frame.sceneDescription(), frame.snapshot(), areaSamples, kNoShadow);
     for (LightSampleData& sample : set.samples) sample.firstView = -1, sample.viewCount = 0;
     std::vector<DiscData> discs;

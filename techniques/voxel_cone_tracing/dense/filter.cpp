@@ -1,4 +1,4 @@
-// Coarser levels of a dense grid of isotropic voxels: Crassin et al. 2011, Sec. 5; thesis Gomes 2015,
+// Makes coarser levels of a dense grid of isotropic voxels: Crassin et al. 2011, Sec. 5; thesis Gomes 2015,
 // Sec. 4.2.1.
 #include "levels.h"
 #include "lumivox/base/error.h"
@@ -28,7 +28,7 @@ void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool on
   const filter::Constants constants{.rule = static_cast<int>(opacity)};
   for (int level = 1; level < texture.levels; ++level) {
     const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
-    // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
+    // Where bricks are halved evenly, levels follow the bricks down to one voxel per brick.
     const bool followsBricks = bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                finest % OccupiedBricks::kSide == glm::ivec3(0);
     const shader::BindingSet bindings{

@@ -1,5 +1,5 @@
-// Coarser levels of six directional grids: Crassin et al. 2011, Sec. 8.1; thesis Gomes 2015, Sec. 3.1.3 and
-// 4.2.1, Fig. 64.
+// Makes coarser levels of six directional grids: Crassin et al. 2011, Sec. 8.1; thesis Gomes 2015, Sec. 3.1.3
+// and 4.2.1, Fig. 64.
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -17,7 +17,7 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
   const bool fromFinest = level - 1 < first;
   const int read = fromFinest ? 0 : level - 1 - first;
   const OccupiedBricks& bricks = onlyChanges ? result.changed.bricks : result.occupied;
-  // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
+  // Where bricks are halved evenly, levels follow the bricks down to one voxel per brick.
   const bool followsBricks = bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                              result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
   const int perSide = OccupiedBricks::kSide >> level;
@@ -67,7 +67,7 @@ class FilterDirectionalPass : public Pass {
     mips = result;
   }
 
-  /// Coarser levels beside a finest one that is changed where it lies.
+  /// Coarser levels beside a finest one that is changed in place.
   struct KeptFaces {
     std::array<gpu::TextureRef, 6> faces;
     std::shared_ptr<ChangedBricks::Levels> levels = std::make_shared<ChangedBricks::Levels>();
@@ -99,7 +99,7 @@ class FilterDirectionalPass : public Pass {
       result.faces = rooms();
       return result;
     }
-    // These are not in the textures of the finest level, and so not among the levels that others may fill.
+    // These levels are not in the textures of the finest one, so that others cannot fill them.
     const KeptFaces& kept = frame.kept("coarser levels of static geometry in unchanged light",
                                        finest->changed.levels, [&] { return KeptFaces{rooms()}; });
     result.faces = kept.faces;

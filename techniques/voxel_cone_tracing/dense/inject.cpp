@@ -1,6 +1,6 @@
-// Injection of direct light: Crassin et al. 2011, Sec. 6; thesis Gomes 2015, Sec. 4.2.1. The mean of what the
-// fragments of each occupied voxel reflect, to all sides alike or by the six faces, independent of their
-// order.
+// Injects direct light: Crassin et al. 2011, Sec. 6; thesis Gomes 2015, Sec. 4.2.1. Stores the mean radiance
+// that the fragments of each occupied voxel reflect, equal for all sides or by the six faces, independent of
+// their order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 
 using namespace shaders::voxel_cone_tracing;
 
-/// Bounces beyond the first, by light that cones gather for every fragment: members of a pass.
+/// Bounces beyond the first, from light that cones gather for every fragment; members of a pass.
 class Bounces {
  public:
   explicit Bounces(Pass* pass)
@@ -39,10 +39,10 @@ class Bounces {
   Param<int> count_, cones_;
 };
 
-/// Injection into grids: members of a pass.
+/// Injection into grids; members of a pass.
 class Injection {
  public:
-  /// Geometry: bounds of what moves.
+  /// Geometry gives the bounds of what moves.
   static constexpr Reads kReads = Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
 
   explicit Injection(Pass* pass)
@@ -54,15 +54,15 @@ class Injection {
         precision_(pass, "precision", Precision::float_,
                    "numbers in the grid; float: 16 bytes a voxel; half: 8") {}
 
-  /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
-  /// fit, nothing of it is taken, and the Error says what would.
+  /// Makes so many grids whose finest level is that of the fragments, evenly halved. Where they do not fit,
+  /// none is made, and the Error says what would fit.
   std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
                                      bool coarserLevels) const {
     return roomFor(frame, placement().resolution, count, format(), label, coarserLevels,
                    count == 1 ? "a grid" : "six directional grids");
   }
 
-  /// A grid that is changed where it lies, and what it was made of.
+  /// A grid that is changed in place, and its sources.
   struct KeptGrid {
     std::vector<gpu::TextureRef> textures;
     ChangedBricks changed{std::make_shared<ChangedBricks::Levels>(), 0, {}};
@@ -71,7 +71,7 @@ class Injection {
     LitMoment moment;
   };
 
-  /// As long as static geometry and the lights on it stay where they are; null where that is not known.
+  /// Kept while static geometry and the lights on it stay the same; null where that is unknown.
   template <class MakeRooms>
   std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, const Bounces& bounces, MakeRooms&& makeRooms) {
     // Every bounce changes all of the light.
@@ -84,8 +84,8 @@ class Injection {
     });
   }
 
-  /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
-  /// of them. `kept`: of the same textures, or null.
+  /// Fills the finest levels, one texture for all sides or six for the faces, and their properties in the
+  /// port. `kept`: that of the same textures, or null.
   template <class Grid>
   void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
             const Bounces& bounces, KeptGrid* kept, const FaceRule& faces = {}) {
@@ -162,22 +162,22 @@ class Injection {
 
   ChangeTracking changes_;
 
-  /// Nothing where more changes the light on static geometry than the shadows of what moves.
+  /// Empty where more than moving shadows changes the light on static geometry.
   std::optional<StaticLight> staticLight(PassContext& frame) {
     float unit = 1.0f;
     if (light_.media.present()) return std::nullopt;
     return changes_.staticLight(frame, *fragments_, light_.shadow, brightestOf(frame, unit));
   }
 
-  /// Static geometry in the light of one moment.
+  /// Static geometry in the light of one time.
   struct StillOctree {
     std::shared_ptr<const RadianceOctree> octree;
     LitMoment moment;
   };
-  std::optional<StaticLight> before_;  ///< of the frame before: only what did not change is worth keeping
+  std::optional<StaticLight> before_;  ///< that of the frame before: only unchanged light is worth keeping
 
-  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known,
-  /// or where it or the lights have moved in this frame.
+  /// Lit static geometry, and in `octree` the changes since then; null where these are unknown, or where it
+  /// or the lights have moved in this frame.
   std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree) {
     const std::optional<StaticLight> key = octree.tree.still ? staticLight(frame) : std::nullopt;
     if (std::exchange(before_, key) != key || !key) return nullptr;
@@ -216,10 +216,10 @@ class Injection {
     return grid;
   }
   bool storesMedia() const { return storeMedia_ && light_.media.present(); }
-  /// No voxel can reflect more; and of half floats the unit.
+  /// The most that a voxel can reflect, and the unit of half floats.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
-    // A grid cannot say anything of what lies nearer than half a voxel. What cones gather for further bounces
-    // is at most what the voxels of the bounce before hold, or the environment.
+    // A grid does not resolve anything nearer than half a voxel. Cones of further bounces gather at most what
+    // the voxels of the bounce before hold, or the environment.
     float brightest =
         static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
     const glm::vec3& sky = frame.sceneDescription().environment;
@@ -229,7 +229,7 @@ class Injection {
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
-  /// The sums of occupied voxels; returns what fragments reflect of the direct light.
+  /// Fills the sums of occupied voxels; returns the direct light that fragments reflect.
   gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums,
                          float brightest) {
     const gpu::BufferRef radiances = radiancesOf(frame, list, sums);
@@ -238,7 +238,7 @@ class Injection {
     return radiances;
   }
 
-  /// The sums of what fragments reflect of the direct light and of what cones find in the store.
+  /// Sums what fragments reflect of direct light and of the light that cones gather in the store.
   void reflect(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& direct, float mostRadiance,
                int cones, const StoreBinding& store) {
     const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
@@ -250,8 +250,9 @@ class Injection {
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .places = sums.kind};
-    // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
-    // nothing in a closed room. With one value for all sides what they begin in is the surface itself.
+    // In a closed room cones lose nothing if they see partly covered finest voxels and, with six faces, the
+    // voxel in which they begin. With one value for all sides the voxel in which they begin is the surface
+    // itself.
     const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
     forEachFragment(frame, frame.program(variant),
                     {bounce::parameters({.gridLow = fragments_->grid.low,
@@ -266,7 +267,8 @@ class Injection {
     addUp(frame, *fragments_, sums, radiances);
   }
 
-  /// The finest levels from the sums: of these bricks alone, or of all voxels where media lie in them.
+  /// Resolves the sums into the finest levels: of these bricks only, or of all voxels where media lie in
+  /// them.
   void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
                const OccupiedBricks& bricks, std::span<const gpu::TextureRef> textures) {
     const LightBinding lights(light_.shadow);

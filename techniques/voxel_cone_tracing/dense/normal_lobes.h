@@ -1,4 +1,4 @@
-// To which side the surfaces in voxels shine: a kind of port of this technique's own.
+// The sides to which surfaces in voxels shine: a kind of port of this technique's own.
 #pragma once
 
 #include "lumivox/pipeline/port.h"
@@ -6,10 +6,10 @@
 
 namespace lumivox::voxel_cone_tracing {
 
-/// Lobes of the normals of lit surfaces, one mip per halving (Crassin et al. 2011, Sec. 5; thesis Gomes 2015,
-/// Sec. 3.1.2): the mean of normals, turned to the lit side and weighted by the light that they reflect. Its
-/// length |D| is 1 where all look the same way, and gives the variance of the lobe, (1 - |D|) / |D| (Toksvig
-/// 2005). Vectors and weights are both sums, so that filtering is linear.
+/// Normal lobes of lit surfaces, one mip per halving (Crassin et al. 2011, Sec. 5; thesis Gomes 2015, Sec.
+/// 3.1.2): the mean D of normals, turned to the lit side and weighted by the light that they reflect. Its
+/// length |D| is 1 where all normals agree, and the variance of the lobe is (1 - |D|) / |D| (Toksvig 2005).
+/// Vectors and weights are both sums, so that filtering is linear.
 struct NormalLobes {
   GridPlacement grid;
   gpu::TextureRef lobes;  ///< xyz: sum of normals times light; w: sum of light, W/(sr m^2)

@@ -1,5 +1,5 @@
-// The nodes of a sparse voxel octree from a list of fragments: Crassin et al. 2011, Sec. 4; thesis Gomes
-// 2015, Sec. 3.1.1 and 4.2.2.
+// Builds the nodes of a sparse voxel octree from a list of fragments: Crassin et al. 2011, Sec. 4; thesis
+// Gomes 2015, Sec. 3.1.1 and 4.2.2.
 #include "octree.h"
 
 #include <fmt/format.h>
@@ -32,8 +32,7 @@ OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
 
 namespace {
 
-/// Bytes of a tree of a depth or of a lesser one: of tags and ranks, and of nodes with their places, as far
-/// as they have been counted.
+/// Bytes of a tree of a given depth or less: tags and ranks, and nodes with their places, as far as counted.
 struct TreeBytes {
   std::uint64_t tags = 0, nodes = 0;
 };
@@ -43,7 +42,7 @@ TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
   return {wordsBeforeDepth(depth + 1) * (2 * 4 + 2 * 8),
           bricks * VoxelOctree::kBrickBytes + shown * VoxelOctree::kCornersBytes};
 }
-/// And of its bricks, with the sums that fill the leaves.
+/// Bytes of its bricks, with the sums that fill the leaves.
 std::uint64_t brickBytes(const VoxelOctree& tree, int depth, const VoxelBytes& voxel) {
   const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
                       leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
@@ -103,17 +102,17 @@ class OctreePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   Out<VoxelOctree> tree{this, "tree", "nodes, and places for their bricks"};
 
-  /// What trees need: the most that any frame wanted, which is what later ones get.
+  /// Sizes of trees: the most that any frame wanted, which later frames get.
   struct Room {
     std::uint32_t bricks = 0, leaves = 0;
-    std::uint32_t shown = 0;                 ///< nodes in which reading finds something
-    std::vector<std::uint32_t> bricksAbove;  ///< those of lesser depths, by depth
+    std::uint32_t shown = 0;                 ///< nodes in which reads find something
+    std::vector<std::uint32_t> bricksAbove;  ///< bricks of lesser depths, by depth
     bool operator==(const Room&) const = default;
   };
   Room room_, stillRoom_;
   std::optional<Room> roomBefore_, stillRoomBefore_;  ///< of the run before
 
-  /// A bit for each node that could be: those that have bricks, and those in which reading finds something.
+  /// A bit for each possible node: those with bricks, and those in which reads find something.
   struct Tags {
     gpu::BufferRef nodes, shown;
   };
@@ -154,7 +153,7 @@ class OctreePass : public Pass {
     return still;
   }
 
-  /// A tree with so much room, and nothing in it; and its tags.
+  /// An empty tree of this size, and its tags.
   std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room,
                                       std::optional<Room>& before) const {
     VoxelOctree result;
@@ -208,7 +207,7 @@ class OctreePass : public Pass {
                        {octree_count::words({wordCount}), octree_count::tags(tags.nodes),
                         octree_count::shown(tags.shown), octree_count::chunkCounts(counts)},
                        chunks);
-    scan(frame, counts, chunks, 2, result.levels);  // which begins with the bricks and tiles that are wanted
+    scan(frame, counts, chunks, 2, result.levels);  // which begins with the wanted bricks and tiles
     frame.dispatchList(frame.program(octree_rank::kProgram),
                        {octree_rank::words({wordCount}), octree_rank::tags(tags.nodes),
                         octree_rank::shown(tags.shown), octree_rank::chunkCounts(counts),
@@ -224,8 +223,8 @@ class OctreePass : public Pass {
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
 
-  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted; and
-  /// with a sixteenth more where later ones will want more or less, since things move.
+  /// A frame that wanted more room than there was is rendered again with as much as it wanted, and a
+  /// sixteenth more where motion lets the number vary.
   void judge(PassContext& frame, const VoxelOctree& result, Room& room) const {
     const std::uint32_t share = &room == &room_ && fragments->still != nullptr ? 16 : 0;
     for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.shown}, {2, &room.leaves}})

@@ -14,7 +14,7 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
-/// Room for so many bricks, about a cube of them: less than a layer of it stays empty.
+/// Makes a pool for so many bricks, about a cube with less than one empty layer.
 gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, gpu::Format format, int& shift) {
   shift = 0;
   while ((std::uint64_t{1} << (3 * (shift + 1))) <= bricks) ++shift;

@@ -1,6 +1,6 @@
-// Light from a reflective shadow map in a sparse voxel octree: photons are splatted into the leaves that they
-// lie in, and a node map finds the nodes above that change. Crassin et al. 2011, Sec. 6; thesis Gomes 2015,
-// Sec. 3.1.3 and 4.2.2.
+// Injects light from a reflective shadow map into a sparse voxel octree: photons are splatted into the leaves
+// around them, and a node map finds the nodes above that change. Crassin et al. 2011, Sec. 6; thesis Gomes
+// 2015, Sec. 3.1.3 and 4.2.2.
 #include <algorithm>
 #include <limits>
 
@@ -57,7 +57,7 @@ class OctreeSplatPass : public Pass {
     radiance = result;
   }
 
-  /// The bricks of `from` with the light of photons, into those of `result`.
+  /// Writes the bricks of `from` with the light of photons into those of `result`.
   void splat(PassContext& frame, const RadianceOctree& result, const gpu::BufferRef& sums,
              const gpu::TextureRef& from) const {
     forEachBrick(
@@ -83,7 +83,7 @@ class OctreeSplatPass : public Pass {
     return GridPlacement{.resolution = size}.voxelCount();
   }
 
-  /// The leaf of each photon, and the lowest common ancestors of those of neighbours.
+  /// The leaf of each photon, and the lowest common ancestors of neighbours' leaves.
   gpu::TextureRef nodeMap(PassContext& frame, const VoxelOctree& tree, const OctreeBinding& bound) {
     const glm::ivec3 size = sizeOf(*photons->position, 0);
     const gpu::TextureRef map = frame.texture({gpu::TextureKind::d2Array, gpu::Format::r32ui, size.x, size.y,

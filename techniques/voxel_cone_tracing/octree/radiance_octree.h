@@ -21,22 +21,23 @@ namespace lumivox::voxel_cone_tracing {
 /// finer ones 2j and 2j + 1, and node n of a level has a brick of its voxels 2n and 2n + 1 along each axis.
 struct VoxelOctree {
   GridPlacement grid;     ///< of the finest voxels
-  gpu::BufferRef bricks;  ///< of each, by depth, the place of its node
+  gpu::BufferRef bricks;  ///< the place of each brick's node, by depth
   gpu::BufferRef levels;  ///< OctreeLevels
-  gpu::BufferRef ranks;   ///< RankedTags: bricks are found by them
-  /// RankedTags of the nodes in which reading finds something, and for each the eight bricks around it.
+  gpu::BufferRef ranks;   ///< RankedTags: locate the bricks
+  /// RankedTags of the nodes in which reads find something, and the eight bricks around each of them.
   gpu::BufferRef shown, corners;
   int depth = 0;  ///< of the leaves
-  /// The tree of static geometry alone; null where nothing moves, or where it is not known apart.
+  /// The tree of static geometry only; null where nothing moves or static geometry is not told apart.
   std::shared_ptr<const VoxelOctree> still;
-  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
-  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
-  std::uint64_t shownRoom = 0;  ///< nodes in which reading finds something
-  bool needsMore = true;        ///< than the frame before
-  /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
+  std::uint64_t brickRoom = 0;  ///< bricks with room
+  std::uint64_t leafRoom = 0;   ///< those of them of the finest level
+  std::uint64_t shownRoom = 0;  ///< nodes in which reads find something
+  bool needsMore = true;        ///< whether it needs more room than the frame before
+  /// Bricks of the depths 0, 0 to 1, 0 to 2 ...: those of trees of 2, 4, 8 ... voxels along a side.
   std::vector<std::uint32_t> bricksDownTo;
 
-  /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
+  /// Layout of `levels` in words: those before all depths, those of one depth, and those before a depth's
+  /// dispatches.
   static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 8, kLevelGroups = 2;
   /// Numbers of threads a brick for which there are dispatches.
   static constexpr std::array<int, 2> kThreads{1, 8};
@@ -81,10 +82,10 @@ struct RadianceOctree {
   int poolShift = 0;     ///< the pool has 2 to the power of this bricks of a face along x and y
   float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 1;  ///< finest first
-  /// What opacity means in coarser levels, as RadianceGrid says it.
+  /// Meaning of opacity in coarser levels, as in RadianceGrid.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
-  /// What is not in one of these cells has the voxels of static geometry in `still`, which is null where that
-  /// is not known.
+  /// Outside these cells the voxels are those of static geometry in `still`, which is null where that is
+  /// unknown.
   std::shared_ptr<const RadianceOctree> still;
   ChangedCells changed;
 
@@ -94,7 +95,7 @@ struct RadianceOctree {
     return VoxelOctree::kBrickSide *
            glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
   }
-  /// Of the texels of the pool: those of bricks that there are, of the levels that are filled.
+  /// Which texels of the pool belong to bricks of filled levels.
   std::vector<bool> texelsInUse() const {
     const gpu::TextureDescription& pool = radiance->description();
     std::vector<bool> result(static_cast<std::size_t>(pool.width) * static_cast<std::size_t>(pool.height) *
@@ -109,8 +110,7 @@ struct RadianceOctree {
           }
     return result;
   }
-  /// The voxels of a level that are not empty. `component`: 3 gives the opacity, 0 the three channels of
-  /// radiance.
+  /// The occupied voxels of a level. `component`: 3 gives the opacity, 0 the three channels of radiance.
   std::vector<VoxelsRead::Voxel> voxels(int level, int component, int face = 0) const {
     const std::vector<float> texels = radiance->downloadFloats(0);
     const gpu::TextureDescription& pool = radiance->description();
@@ -127,7 +127,7 @@ struct RadianceOctree {
       }
     return result;
   }
-  /// Of voxels with six faces: the opacities along x, y and z of those that have one.
+  /// For voxels with six faces, the opacities along x, y and z of those that have one.
   std::vector<VoxelsRead::Voxel> opacities(int level) const {
     std::map<std::array<int, 3>, glm::vec3> found;
     for (int axis = 0; axis < 3; ++axis)

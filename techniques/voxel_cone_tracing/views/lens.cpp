@@ -1,4 +1,4 @@
-// What a camera with a thin lens sees of a store: Crassin et al. 2011; thesis Gomes 2015, Sec. 2.4, Fig. 16.
+// Shows a store through a thin lens: Crassin et al. 2011; thesis Gomes 2015, Sec. 2.4, Fig. 16.
 #include "../cones/march.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"

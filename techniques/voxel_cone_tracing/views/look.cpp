@@ -1,4 +1,4 @@
-// Looking at a grid: ray and cone casting of the voxels of any kind of port, with a transfer function (thesis
+// Shows a grid: casts rays and cones through the voxels of any kind of port, with a transfer function (thesis
 // Gomes 2015, Sec. 2.3).
 #include <fmt/format.h>
 
@@ -73,7 +73,8 @@ class LookPass : public Pass {
                             fmt::join(names, ", ")));
   }
 
-  /// Without a word the first that the kind has: an absorbing density, a field of opacity, all that is not 0.
+  /// The default is the first that the kind has: an absorbing density, a field of opacity, or all that is not
+  /// 0.
   VoxelTransfer::Rule ruleFor(const Field& shown, const std::vector<const Field*>& fields,
                               const PortKind& kind) const {
     VoxelTransfer::Rule rule{.absorption = absorption, .multiplied = multiplied};
@@ -114,7 +115,7 @@ class LookPass : public Pass {
               shown.unit == kRadianceUnit};
   }
 
-  /// In steps through what all voxels emit and how opaque they are; cones through means of it.
+  /// Marches in steps through the emission and opacity of voxels; cones march through their means.
   gpu::TextureRef marched(PassContext& frame, const VoxelTransfer& transfer, const VoxelLook& look) const {
     const glm::ivec3& size = transfer.values().resolution();
     const int levels = cast == Cast::cone ? gpu::fullLevelCount(size.x, size.y, size.z) : 1;

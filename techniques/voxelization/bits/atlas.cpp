@@ -13,15 +13,15 @@ using namespace shaders::voxelization;
 
 namespace {
 
-/// The atlas on the device, as a part of a pass: the texels that lie on the surface. They are made at the
-/// first frame and again only when their size changes, and never travel back.
+/// The atlas on the device, as a part of a pass: the texels that lie on the surface. They are made in the
+/// first frame and again only when their size changes, and are never read back.
 class AtlasTexels {
  public:
   explicit AtlasTexels(Pass* pass)
       : texelsPerVoxel_(pass, "texels_per_voxel", 2.0f, within(0.1f, 16.0f),
                         "texels of the atlas along the side of a voxel; fewer leave holes") {}
 
-  /// An invocation for each texel of each of these draws.
+  /// Runs an invocation for each texel of each of these draws.
   template <class Draws, class Variant>
   void dispatch(PassContext& frame, const GridPlacement& grid, const Draws& draws, const Variant& variant,
                 const shader::BindingSet& bindings) {
@@ -57,7 +57,7 @@ class AtlasTexels {
     texelSize_ = texelSize;
   }
 
-  // Two leave neighbours on the surface at most 0.71 voxels apart.
+  // With two, neighbours on the surface are at most 0.71 voxels apart.
   Param<float> texelsPerVoxel_;
   double texelSize_ = 0.0;
   std::vector<AtlasPart> parts_;

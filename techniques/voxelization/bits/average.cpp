@@ -1,5 +1,5 @@
-// A list of fragments to one value per voxel, in a way that does not depend on the order of the list: sums of
-// integers, as in Crassin & Green 2012, Sec. 22.4, but exact.
+// Averages a list of fragments to one value per voxel, independent of the list's order: sums of integers, as
+// in Crassin & Green 2012, Sec. 22.4, but exact.
 #include <algorithm>
 
 #include "bit_voxelizer.h"
@@ -23,7 +23,7 @@ class AveragePass : public Pass {
 
   Reads readsFrom() const override { return Reads::materials; }
 
-  std::uint64_t room_ = 0;  ///< slots that there is room for: a guess, or what earlier frames needed
+  std::uint64_t room_ = 0;  ///< number of slots: a guess, or what earlier frames needed
 
   void sumAndResolve(PassContext& frame) {
     const VoxelSlots slots = claimSlots(frame, *fragments, room_);
@@ -72,7 +72,7 @@ class AveragePass : public Pass {
     if (judgesSums()) bits = binaryGridOf(frame, grid, {bitsOf(frame, covered, "bits", masks), nullptr});
   }
 
-  /// Whether bits depend on what the fragments of a voxel cover together.
+  /// Whether bits depend on the joint coverage of a voxel's fragments.
   bool judgesSums() const {
     return bits.wanted() && masks != Masks::any && fragments->coverage == VoxelFragments::Coverage::sum;
   }

@@ -76,9 +76,9 @@ BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const Bit
 
 namespace {
 
-/// What is kept of a list while its fragments that stand still are the same.
+/// State kept while the still fragments of a list are the same.
 struct FollowedBits {
-  gpu::TextureRef still, words;  ///< of what stands still, and of all
+  gpu::TextureRef still, words;  ///< bits of still geometry, and of all geometry
   BinaryGrid grid;
   /// d2 r32ui with the levels of the stacks: 1 where something moves, 2 where something moved the frame
   /// before.
@@ -144,7 +144,7 @@ BinaryGrid followedGridOf(PassContext& frame, const VoxelFragments& fragments, M
 
 VoxelFragments BitVoxelizer::fragmentsOf(PassContext& frame, const GridPlacement& grid,
                                          const BitWords& words) {
-  // A first guess: surfaces fill about as many voxels as six sides of the grid.
+  // First guess: surfaces fill about as many voxels as the grid's six sides.
   const auto side = static_cast<std::uint64_t>(grid.longest());
   if (room_ == 0) room_ = 6 * side * side;
   const VoxelFragments list = listBehind(frame, grid, surface(), room_);

@@ -9,17 +9,17 @@ namespace lumivox::voxelization {
 /// is voxel (i, j, 32 w + b). d3 r32ui.
 gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const char* label);
 
-/// Whether a voxel with holes is set: always; from half its cover on; or with the probability of its cover.
-/// In the order of masks.glsl.
+/// When a voxel with holes is set: always; from half coverage on; or with the probability of its coverage. In
+/// the order of masks.glsl.
 enum class Masks { any, half, random };
 
-/// The bits of the voxels of a list. Fragments are judged one by one, also in a list whose coverages add up.
+/// The bits of a list's voxels. Fragments are judged one by one, even in a list whose coverages add up.
 gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label,
                        Masks masks = Masks::any);
-/// By what the fragments of a voxel cover together; voxels of no cover are not set.
+/// The bits by the joint coverage of a voxel's fragments; voxels without coverage are not set.
 gpu::TextureRef bitsOf(PassContext& frame, const OccupancyGrid& opacity, const char* label, Masks masks);
 
-/// Words of voxels and, where there are surface samples beside them, of theirs (null: none); bits.glsl.
+/// Words of voxels and of surface samples beside them (null: none); bits.glsl.
 struct BitWords {
   gpu::TextureRef voxels, surface;
   shader::BindingSet bindings() const;
@@ -28,13 +28,12 @@ struct BitWords {
 /// The stacks, with their hierarchy, of all of these voxels.
 BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
 
-/// The stacks of a list that tells what moves from what stands still (VoxelFragments::still): the latter is
-/// kept, and only columns in which something moves or moved are made anew, where they lie. The same bits as
+/// The stacks of a list that tells moving from still fragments (VoxelFragments::still). Still ones are kept,
+/// and only columns in which something moves or moved are made anew, in place. The bits are the same as
 /// without.
 BinaryGrid followedGridOf(PassContext& frame, const VoxelFragments& fragments, Masks masks);
 
-/// The bits of static geometry are kept, and in every frame those of what moves are added to a copy of
-/// them.
+/// Keeps the bits of static geometry; every frame adds those of moving geometry to a copy of them.
 class BitVoxelizer : public GridPass {
  public:
   void run(PassContext& frame) override;
@@ -43,7 +42,7 @@ class BitVoxelizer : public GridPass {
   /// Sets the bits of these draws.
   virtual void mark(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
                     const Draws& draws) = 0;
-  /// Surface samples whose voxels belong to the result too, and whose grid it takes; null: none.
+  /// Surface samples whose voxels also belong to the result, and whose grid it takes; null: none.
   virtual const VoxelFragments* surface() const { return nullptr; }
 
   Out<BinaryGrid> bits{this, "bits", "one bit a voxel, in stacks of 128 along z with a hierarchy in x and y"};
@@ -54,7 +53,7 @@ class BitVoxelizer : public GridPass {
  private:
   VoxelFragments fragmentsOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
 
-  std::uint64_t room_ = 0;  ///< fragments that the list is made for, beside those of the surface
+  std::uint64_t room_ = 0;  ///< fragments that the list has room for, beside those of the surface
 };
 
 }  // namespace lumivox::voxelization

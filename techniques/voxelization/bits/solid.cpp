@@ -1,4 +1,4 @@
-// The inside of closed meshes (solid voxelization by parity along columns).
+// Voxelizes the inside of closed meshes (solid voxelization by parity along columns).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace {
 /// The closed surfaces of an object.
 struct ClosedSurface {
   std::string name;                                    ///< of the object
-  std::uint32_t firstTriangle = 0, triangleCount = 0;  ///< in the list of all objects
+  std::uint32_t firstTriangle = 0, triangleCount = 0;  ///< in the triangle list of all objects
   Bounds bounds;                                       ///< object space, at rest
-  bool room = false;                                   ///< its front sides look inwards
+  bool room = false;                                   ///< whether its front sides face inwards
 };
 
-/// Columns that an object may lie in.
+/// Columns that an object may occupy.
 struct Columns {
   glm::ivec2 low{0}, size{0};
 };
@@ -67,7 +67,7 @@ class SolidPass : public BitVoxelizer {
     if (objects.empty()) return;
     const gpu::TextureRef parity = bitWords(frame, grid, "parity");
     const Aside aside(frame, mostTriangles_);
-    // Within an object a second surface inside the first is a cavity; objects that overlap are both solid.
+    // Within an object a second surface inside the first is a cavity; overlapping objects are both solid.
     for (const int object : objects) fillObject(frame, grid, words, *parity, aside, object);
   }
 
@@ -90,7 +90,7 @@ class SolidPass : public BitVoxelizer {
                    {columns.size, 1});
   }
 
-  /// Once a scene: how surfaces hang together does not change while they move.
+  /// Once per scene: the connectivity of surfaces does not change while they move.
   void findClosedSurfaces(PassContext& frame) {
     const Scene& scene = frame.sceneDescription();
     std::vector<std::uint32_t> triangles;
