@@ -1,4 +1,4 @@
-// The battery: cells in worker processes, a thread of the battery behind each.
+// Runs the battery: cells in worker processes, each driven by a thread.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,12 +28,12 @@ namespace {
 using namespace stress;
 using Clock = std::chrono::steady_clock;
 
-// s for one cell: ten times what the slowest takes on a machine that does nothing else.
+// Time limit of one cell, s: ten times that of the slowest on an idle machine.
 constexpr double kQuickLimit = 60.0, kFullLimit = 600.0;
-/// A worker opens a device before it is ready.
+/// A worker opens a device before it is ready, s.
 constexpr double kStartLimit = 60.0;  // s
 
-/// Starts of workers that may fail one after the other before no more is tried.
+/// Starts of workers that may fail in a row before the battery gives up.
 constexpr int kFailedStarts = 3;
 
 class Battery {
@@ -47,7 +47,7 @@ class Battery {
         limit_(options.timeLimit > 0.0 ? options.timeLimit
                : options.quick         ? kQuickLimit
                                        : kFullLimit) {
-    // Each cell says of its own what it depends on; a worker that dies cannot.
+    // Each cell reports its dependencies; a worker that dies cannot.
     for (const StressJob& job : jobs_) {
       requests_.push_back(requestFor(job));
       cells_[requests_.size() - 1] =
@@ -58,14 +58,14 @@ class Battery {
   std::vector<StressCell> run() {
     if (options_.program.empty()) throw Error("a stress battery needs a program that serves as its workers");
     if (jobs_.empty()) return {};
-    // The first worker tells what device there is, and so how many of them it bears.
+    // The first worker describes the device, from which the number of workers follows.
     workers_ = processorsWanted();
     std::unique_ptr<Child> first = firstWorker();
     if (!device_.software && options_.workers == 0 && workers_ > 1) {
       logInformation("{} is one device: one worker", device_.device);
       workers_ = 1;
       first.reset();
-      first = firstWorker();  // with all of the memory
+      first = firstWorker();  // gets all of the memory
     }
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < workers_; ++i)
@@ -91,14 +91,14 @@ class Battery {
     return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, jobs_.size()));
   }
 
-  /// Several workers share the processors: a software rasteriser with a thread for each would only get in its
-  /// own way.
+  /// Several workers share the processors: software rasterisers with a thread per processor would only hinder
+  /// each other.
   std::vector<std::string> environment() const {
     if (workers_ == 1 || std::getenv("LP_NUM_THREADS") != nullptr) return {};
     return {"LP_NUM_THREADS=1"};
   }
 
-  /// They share the memory too: what one takes, the others lack.
+  /// They also share the memory.
   std::vector<std::string> program() const {
     std::vector<std::string> words = options_.program;
     const std::uint64_t all = options_.memoryBytes > 0 ? options_.memoryBytes
@@ -109,7 +109,7 @@ class Battery {
     return words;
   }
 
-  /// The next job, pipeline by pipeline; past the end: none.
+  /// The next job, pipeline by pipeline; past the end where none is left.
   std::size_t take() {
     const std::lock_guard lock(mutex_);
     return failure_ ? jobs_.size() : next_++;
@@ -129,7 +129,7 @@ class Battery {
     }
   }
 
-  /// A worker and what it says of its device. Error when it does not start.
+  /// Starts a worker and returns it with its description of the device. Error where it does not start.
   std::pair<std::unique_ptr<Child>, WorkerDevice> startWorker() const {
     auto child = std::make_unique<Child>(program(), environment());
     const Child::Answer answer = child->receive(kStartLimit);
@@ -143,7 +143,7 @@ class Battery {
     throw Error(fmt::format("a worker of the stress battery {}: {}", child->ending(), child->lastWords()));
   }
 
-  /// When not even the first one starts, there is no battery.
+  /// Without a first worker there is no battery.
   std::unique_ptr<Child> firstWorker() {
     auto [child, device] = startWorker();
     device_ = device;
@@ -151,8 +151,8 @@ class Battery {
     return std::move(child);
   }
 
-  /// In the place of one that was lost; null: it could not be started, which is one broken cell. After
-  /// kFailedStarts in a row no more is tried, and what is left was not run.
+  /// Replaces a lost worker; null where it could not be started, which breaks one cell. After kFailedStarts
+  /// in a row the battery gives up, and the remaining cells are not run.
   std::unique_ptr<Child> nextWorker(std::size_t job) {
     StressCell& cell = cells_[job];
     cell.outcome = StressOutcome::broken;
@@ -174,7 +174,7 @@ class Battery {
     }
   }
 
-  /// False: the worker is of no further use.
+  /// False where the worker is of no further use.
   bool ask(Child& child, std::size_t job) {
     StressCell& cell = cells_[job];
     child.forgetWords();
@@ -201,7 +201,7 @@ class Battery {
     return false;
   }
 
-  /// A cell that was run is kept at once: whatever ends the battery costs no more than those under way.
+  /// Stores a cell at once, so that an interruption costs only the cells under way.
   void finished(std::size_t job, bool wasRun) {
     const std::lock_guard lock(mutex_);
     if (store_ != nullptr && wasRun) store_->add(std::vector<StressCell>{cells_[job]});
@@ -213,8 +213,8 @@ class Battery {
     if (options_.progress) options_.progress(cells_[job], done_, jobs_.size(), secondsLeft());
   }
 
-  /// What the rest takes, s: as the same cases of other pipelines did. A case that was not run yet is as dear
-  /// as those that were.
+  /// Expected remaining time, s, from the same cases of other pipelines. A case not run yet counts like the
+  /// mean of those that were.
   double secondsLeft() const {
     double left = 0.0;
     for (std::size_t i = 0; i < jobs_.size(); ++i)
@@ -231,7 +231,7 @@ class Battery {
   std::vector<StressCell> cells_;
   std::vector<bool> isDone_;
   const double limit_;
-  const std::uint64_t memoryAtStart_ = sharedMemoryLeft();  // address space each worker has of its own
+  const std::uint64_t memoryAtStart_ = sharedMemoryLeft();  // each worker has an address space of its own
   std::size_t workers_ = 1;
   WorkerDevice device_{{}, {}, {}, true};
   std::atomic<int> failedStarts_ = 0;

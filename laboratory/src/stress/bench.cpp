@@ -38,7 +38,7 @@ void requireHealthy(const FrameResult& frame) {
                   (more == 0 ? std::string() : fmt::format(" (and {} more findings)", more)));
 }
 
-/// A list has no order; its content is the sorted items.
+/// Lists have no order, so that the sorted items are hashed.
 void addContent(Hasher& hasher, const VoxelList& list) {
   std::uint32_t count = 0;
   const std::vector<std::byte> word = list.count->download(0, sizeof(count));
@@ -55,7 +55,7 @@ void addContent(Hasher& hasher, const VoxelList& list) {
   for (const std::vector<std::uint32_t>& item : items) hasher.bytes(item.data(), list.itemBytes);
 }
 
-/// Textures, and the lists that the kind tells of; of other buffers nobody knows what in them counts.
+/// Hashes textures and the lists that the kind declares. The meaning of other buffers is unknown.
 void addContent(Hasher& hasher, const OutBase& output) {
   const PortContents contents = output.contents();
   std::vector<const gpu::Buffer*> added;
@@ -69,7 +69,7 @@ void addContent(Hasher& hasher, const OutBase& output) {
     for (int level = 0; level < texture->description().levels; ++level) hasher.add(texture->download(level));
 }
 
-/// One image with the channels of all, in the order of their names.
+/// One image with the channels of all images in the order of their names.
 ImageBuffer besideEachOther(const std::map<std::string, ImageBuffer>& images) {
   int channels = 0;
   for (const auto& [name, image] : images) channels += image.channels();
@@ -84,7 +84,7 @@ ImageBuffer besideEachOther(const std::map<std::string, ImageBuffer>& images) {
   return all;
 }
 
-/// Where the passes' outputs have voxels, the finest ones of each.
+/// The finest voxel grids of the passes' outputs.
 std::vector<VoxelBox> gridsOf(const PipelineExecutor& executor, const Pipeline& text) {
   std::vector<VoxelBox> grids;
   for (const PassText& pass : text.passes)
@@ -99,7 +99,7 @@ std::vector<VoxelBox> gridsOf(const PipelineExecutor& executor, const Pipeline& 
   return grids;
 }
 
-/// Voxels seen along z: the nearer the first one, the brighter.
+/// Draws voxels as seen along z; nearer ones are brighter.
 ImageBuffer imageOf(const VoxelSet& voxels) {
   const glm::ivec3 size = voxels.resolution();
   ImageBuffer image(std::max(1, size.x), std::max(1, size.y), 1);
@@ -132,18 +132,18 @@ struct PipelineBench::State {
   ParameterValues values;
   ImageBuffer last, given;
   bool isMetered = false;
-  std::optional<double> exposure;  ///< of the scene that was rendered last
+  std::optional<double> exposure;  ///< that of the last scene rendered
 
-  /// Finds the exposure of a scene from a small reference of it, which is the same for all pipelines.
+  /// Finds a scene's exposure from a small reference, the same for all pipelines.
   void meter(const Scene& scene, const Shot& shot, double time);
   Ready ready(const Shot& shot) const;
-  /// Outputs of the last pass are kept where the pipeline has none of its own.
+  /// Keeps the outputs of the last pass where the pipeline declares none.
   void keepVoxels(PipelineExecutor& executor, const Pipeline& text) const;
   SceneSnapshot snapshot(const Scene& scene, const Ready& ready, double time) const {
     return snapshotOf(scene, time, ready.options.camera, ready.options.width, ready.options.height);
   }
   Frame frame(PipelineExecutor& executor, const SceneSnapshot& snapshot, const Shot& shot, int index);
-  /// Of the first output that has some; the image shows them from now on.
+  /// Voxels of the first output that has some; the image shows them from now on.
   std::optional<OccupiedVoxels> lookAtVoxels(const std::vector<const OutBase*>& outputs);
   std::vector<const OutBase*> lastOutputs(const PipelineExecutor& executor, const Pipeline& text) const;
   std::vector<Frame> sequence(PipelineExecutor& executor, const Scene& scene, const Ready& ready,
@@ -208,10 +208,10 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
     else if (!frame.result.outputs.empty())
       last = frame.result.outputs.begin()->second;
   }
-  // What is no light is drawn as fractions, like voxels.
+  // Outputs other than light are drawn as fractions, like voxels.
   if (frame.whole.empty()) exposure.reset();
   if (shot.keepEverything) frame.grids = gridsOf(executor, pipeline);
-  // After the image, which shows where it is bad.
+  // Checked after the image, which shows the bad places.
   requireHealthy(frame.result);
   return frame;
 }
@@ -231,7 +231,7 @@ void PipelineBench::State::meter(const Scene& scene, const Shot& shot, double ti
   try {
     exposure = viewExposure(scene, view);
   } catch (const Error&) {
-    // What the path tracer refuses is displayed by itself.
+    // A scene that the path tracer refuses has the exposure of its own image.
   }
 }
 
@@ -363,7 +363,7 @@ LayeredImage PipelineBench::reference(const Scene& scene, const Shot& shot, int 
 }
 
 void PipelineBench::show(const ImageBuffer& image) {
-  // The channels of several images beside each other are none to look at.
+  // Channels of several images together make no image to look at.
   if (image.channels() == 1 || image.channels() == 3) state_->given = image;
 }
 

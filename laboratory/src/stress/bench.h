@@ -1,4 +1,4 @@
-// The bench of one pipeline: cases.h says what a case may ask of it.
+// The bench of one pipeline; cases.h declares what cases use.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace lumivox::stress {
 
-/// The surroundings of a bench. Everything but the pipeline is the same for all cells of a worker.
+/// The environment of a bench, the same for all cells of a worker but for the pipeline.
 struct Ground {
   gpu::Device& device;
   gpu::DeviceOptions deviceOptions;  ///< for a second device like the first
@@ -45,12 +45,12 @@ class PipelineBench : public Bench {
   LayeredImage reference(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) override;
   void show(const ImageBuffer& image) override;
 
-  /// The image last given to show(), else the last whole image that was rendered; empty: none.
+  /// The image last given to show(), else the last whole image rendered; may be empty.
   const ImageBuffer& shown() const;
-  /// From now on exposures are found, which takes a small path-traced image of every scene that is rendered.
+  /// Finds exposures from now on, which path-traces a small image of every scene rendered.
   void meterScenes();
-  /// EV at which shown() is displayed: that of the scene rendered last, the same for every pipeline; the
-  /// image's own where there is none.
+  /// EV at which shown() is displayed: that of the last scene rendered, the same for every pipeline, or the
+  /// image's own if there is none.
   double exposure() const;
 
  private:

@@ -19,13 +19,13 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
 }
 
-/// Without the white space around it.
+/// The text without surrounding white space.
 std::string trimmedLine(const std::string& line) {
   const std::size_t first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
   return first == std::string::npos ? std::string() : line.substr(first, last - first + 1);
 }
 
-/// Without the point at its end.
+/// The text without a full stop at its end.
 std::string withoutPoint(const std::string& text) {
   return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
@@ -47,7 +47,8 @@ CardRow rowOf(const std::string& item) {
   return row;
 }
 
-/// A number that fills the text, and what one in its last written digit is worth; nullopt: it is none.
+/// A number that fills the text, and the value of one in its last written digit; nullopt where it is not a
+/// number.
 struct WrittenNumber {
   double value = 0.0, lastDigit = 0.0;
 };
@@ -72,7 +73,7 @@ std::optional<CardNumber> cardNumberIn(const std::string& text) {
   };
   if (const std::size_t at = text.find(kBetween); at != std::string::npos) {
     const auto low = part(0, at), high = part(at + kBetween.size(), std::string::npos);
-    // Whole digits are rounded: the ends may be one half beyond.
+    // Written digits are rounded, so that the ends may be half a digit beyond.
     if (!low || !high || low->value > high->value) return std::nullopt;
     return CardNumber{low->value - 0.5 * low->lastDigit, high->value + 0.5 * high->lastDigit, text};
   }
@@ -143,7 +144,7 @@ const CardRow* rowFor(const std::vector<CardRow>& rows, const std::string& pipel
 
 CardAnswer answerOf(const CardRow& row, const StressCell& cell) {
   const std::string explanation = row.what + ": " + row.why;
-  // Without a number there is nothing to compare.
+  // A cell without a number has nothing to compare.
   if (cell.measure.empty() || !std::isfinite(cell.value.value)) return {explanation, {}};
   if (row.numbers.empty())
     return {{}, fmt::format("the card's row for it names no measured number in bold: '{}'", row.what)};

@@ -14,8 +14,8 @@ namespace lumivox::stress {
 
 namespace {
 
-/// Why an output of a pass of the technique that the pipeline stands for stays black on such a scene; empty:
-/// none does.
+/// Why an output of the technique that the pipeline stands for stays black on such a scene; empty where none
+/// does.
 std::string whyBlack(Bench& bench, const SceneTraits& traits) {
   const Pipeline& pipeline = bench.pipeline();
   const std::string subject = techniqueOf(pipeline, bench.techniques());
@@ -33,7 +33,7 @@ std::string whyBlack(Bench& bench, const SceneTraits& traits) {
 
 Scene suitableScene(Bench& bench) {
   std::string why;
-  // Even fog costs less than particles.
+  // Uniform fog costs less than particles.
   for (const char* name : {"cornell", "cornell_glossy", bench.quick() ? "fog" : "smoke"}) {
     Scene scene = bench.committedScene(name);
     why = whyBlack(bench, SceneTraits::of(scene));

@@ -1,4 +1,4 @@
-// All families together.
+// Joins all families of cases.
 #include "stress/cases.h"
 
 #include <iterator>

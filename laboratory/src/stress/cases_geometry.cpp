@@ -1,5 +1,4 @@
-// Geometry at its extremes: none, slivers, duplicates, crowds, walls thinner than a voxel, nothing where the
-// grid is.
+// Geometry at its extremes: none, slivers, duplicates, crowds, walls thinner than a voxel, and empty grids.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +54,7 @@ std::optional<Finding> oneTriangle(Bench& bench) {
                 {meanOf(indirectOf(frame)) / direct, 0.0}, 0.01);
 }
 
-/// The loader drops what has no area; a sliver of 0.1 mm stays, too thin to be seen.
+/// The loader drops triangles without area; a sliver of 0.1 mm stays, too thin to be seen.
 std::optional<Finding> degenerate(Bench& bench) {
   const Scene scene = bench.committedScene("stress/degenerate");
   Scene floor = scene;
@@ -67,7 +66,7 @@ std::optional<Finding> degenerate(Bench& bench) {
   return sameAs(bench, builder.scene, scene, 0.01, "the floor without the slivers");
 }
 
-/// Needles of half a metre in the free space of a room, all over it and in all directions.
+/// Needles of half a metre throughout the free space of a room, in all directions.
 Scene roomWithNeedles() {
   constexpr int kCount = 64;
   constexpr double kLength = 0.5, kThickness = 1e-6 * kLength;
@@ -163,7 +162,7 @@ std::optional<Finding> acuteWedge(Bench& bench) {
   const Scene scene = wedge(kAlbedo);
   const Frame frame = bench.render(scene);
   if (frame.whole.empty()) return withoutLight();
-  // Everything reflects `kAlbedo` at first, and a bounce passes on no more than that share of what was there.
+  // Every surface reflects `kAlbedo`, so that a bounce passes on at most that share.
   double bound = kAlbedo, bounce = kAlbedo;
   int bounces = 0;
   if (makesIndirect(frame))
@@ -240,7 +239,7 @@ std::optional<Finding> openAgainstClosed(Bench& bench) {
                 fmt::format("taken: {:.3g}; from the reference: {:.3g}", 1.0 - left, 1.0 - wanted));
 }
 
-/// All grids that can lie around the camera do so, with this side; nullopt: none can.
+/// Places all grids that can follow the camera around it, with this side; nullopt where none can.
 std::optional<Shot> withGridsAroundCamera(Bench& bench, double extent) {
   Shot shot;
   for (const PassParameter& one : freePassParameters(bench.pipeline(), bench.techniques())) {

@@ -1,6 +1,6 @@
 // Images and cameras at their limits. Two relations need no reference: the radiance along a ray does not
-// depend on the camera that looks along it; and the middle pixels of three times three see the very rays of
-// an image of a third of the size.
+// depend on the camera; and the middle pixels of blocks of 3 x 3 see the rays of an image of a third of the
+// size.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,13 +13,12 @@ namespace lumivox::stress {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// A ray is the same to the last bits of single precision; what looks up its neighbours in the image may
-/// see other ones.
+/// A ray is the same up to the last bits of single precision; look-ups of neighbours in the image may differ.
 constexpr double kSameRay = 0.01;
-/// Voxels that only this view makes though no triangle touches them.
+/// Share of voxels that only this view makes and no triangle touches.
 constexpr double kSpurious = 0.01;
 
-/// For a voxelizer that starts from an image: what it adds falsely beyond an ordinary view.
+/// For a voxelizer that starts from an image: the false voxels beyond those of an ordinary view.
 Finding spuriousBeyond(Bench& bench, const Scene& ordinary, const Scene& scene, const Shot& shot) {
   const double usual = spuriousShare(bench, ordinary, {}), now = spuriousShare(bench, scene, shot);
   return judged("voxels that no triangle touches, beyond those of an ordinary view; of the occupied ones",
@@ -27,7 +26,7 @@ Finding spuriousBeyond(Bench& bench, const Scene& ordinary, const Scene& scene, 
                 fmt::format("{:.3g} of them are spurious, {:.3g} with an ordinary view", now, usual));
 }
 
-/// An image against every third pixel of one of three times its size.
+/// Compares an image with every third pixel of one of three times its size.
 std::optional<Finding> everyThird(Bench& bench, int width, int height) {
   if (!seesCamera(bench)) return std::nullopt;
   const Scene scene = suitableScene(bench);
@@ -64,7 +63,7 @@ CameraView along(const CameraView& view, int x, int y) {
   return one;
 }
 
-/// Pixels of an image against cameras that look along their rays alone.
+/// Compares pixels of an image with cameras that look along their rays only.
 std::optional<Finding> raysAgree(Bench& bench, const Scene& scene, const Scene& ordinary) {
   if (!seesCamera(bench)) return std::nullopt;
   Shot shot;
@@ -95,11 +94,11 @@ std::optional<Finding> raysAgree(Bench& bench, const Scene& scene, const Scene& 
 /// A point above what stands in the room, with walls in every direction but one.
 glm::dvec3 insideOf(const Scene& scene) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  const glm::dvec3 share(0.47, 0.73, 0.41);  // in the plane of no wall
+  const glm::dvec3 share(0.47, 0.73, 0.41);  // not in the plane of any wall
   return snapshot.origin + glm::mix(glm::dvec3(snapshot.bounds.low), glm::dvec3(snapshot.bounds.high), share);
 }
 
-/// From inside: seen from outside, a whole room is less than a pixel of a view of 179 degrees, and smaller
+/// Looks from inside. From outside a whole room is smaller than a pixel of a view of 179 degrees, and smaller
 /// than the steps in which a rasteriser places corners.
 std::optional<Finding> atFov(Bench& bench, double fov) {
   const Scene ordinary = suitableScene(bench);
@@ -123,7 +122,7 @@ std::optional<Finding> almostAlongUp(Bench& bench) {
   return raysAgree(bench, scene, ordinary);
 }
 
-/// A camera whose keys or whose one view is impossible. Whoever accepts it must not make NaN of it.
+/// A camera whose keys or only view is impossible. If the loader accepts it, no NaN may follow.
 std::optional<Finding> impossible(Bench& bench, const std::string& camera, double time) {
   if (!seesCamera(bench)) return std::nullopt;
   const Scene scene =

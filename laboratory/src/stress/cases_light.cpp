@@ -1,5 +1,5 @@
-// Light at its extremes: none, too much, in places where distances and cosines vanish, many lights, spots of
-// no and of almost every direction.
+// Light at its extremes: none, too much, where distances and cosines vanish, many lights, spots of nearly no
+// and of nearly all directions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace lumivox::stress {
 namespace {
 
 constexpr const char* kLightFamily = "light";
-/// A technique of one bounce is within so much of the reference of one bounce where it does its best.
+/// Bias of a one-bounce technique at its best against the one-bounce reference.
 constexpr double kFairBias = 0.1;
 
 std::optional<Finding> exactlyBlack(Bench& bench, const Scene& scene) {
@@ -23,8 +23,8 @@ std::optional<Finding> exactlyBlack(Bench& bench, const Scene& scene) {
   return judged("largest radiance", {largestOf(frame.whole), 0.0}, 0.0);
 }
 
-/// A room with a light of every kind that has no extent; in the full battery the Cornell box with its area
-/// light as well.
+/// A room with a light of every kind without extent; in the full battery the Cornell box with its area light
+/// as well.
 Scene allLights(const Bench& bench) {
   Scene scene = bench.quick() ? closedRoom(0.7f).scene : bench.committedScene("cornell");
   scene.hash = {};
@@ -139,11 +139,11 @@ std::optional<Finding> environmentOnly(Bench& bench) {
   return againstReference(bench, builder.scene, kFairBias);
 }
 
-/// Light of a wall that no view from there shows: ahead, and with the camera turned.
+/// Light from a wall outside the view, with the camera looking ahead and turned.
 std::optional<Finding> hiddenSender(Bench& bench) {
   if (!makesImages(bench)) return std::nullopt;
   constexpr double kTurn = 10.0;  // degrees
-  // Few paths meet so small a wall.
+  // Few paths hit such a small wall.
   constexpr int kSamples = 1024;
   Finding worst;
   std::string detail;

@@ -1,6 +1,6 @@
-// Parameters at the ends of their ranges. An extreme may be coarse; it is too bad when leaving the light out
-// would be better, unless that is so with the battery's own values too; or when a voxelizer misses more than
-// half of what it should find.
+// Parameters at the ends of their ranges. An extreme may be coarse. It is too bad where leaving the light out
+// would be better, unless that also holds for the battery's values, or where a voxelizer misses more than
+// half of the touched voxels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +13,15 @@ namespace lumivox::stress {
 namespace {
 
 constexpr double kMissed = 0.5;
-/// As good as none, and the noise of a reference of few samples.
+/// As bad as leaving the light out, plus the noise of a reference of few samples.
 constexpr double kNoise = 1.02;
-/// No error of a bounded image is a thousand times the light itself: light that grows from step to step is.
+/// The error of a bounded image never reaches a thousand times the light; that of light growing from step to
+/// step does.
 constexpr double kGrown = 1e3;
 
 constexpr int kPixels = 48, kReferenceSamples = 64;
 
-/// All other parameters are at their cheap values, in the full battery too: an upper end alone may take long.
+/// All other parameters have their cheap values, even in the full battery, since one upper end may take long.
 Shot cheapShot(const Pipeline& pipeline) {
   Shot shot;
   shot.width = shot.height = kPixels;
@@ -28,8 +29,8 @@ Shot cheapShot(const Pipeline& pipeline) {
   return shot;
 }
 
-/// How bad a pipeline is at these values: the worst RMSE of an output over that of leaving it out, or the
-/// share of the touched voxels that are missed; by the output's name. Empty: nothing can be said.
+/// Badness of a pipeline at these values: RMSE of each output over that of leaving it out, or the share of
+/// touched voxels that are missed; by the output's name. Empty where neither applies.
 std::map<std::string, Measured> badnessOf(Bench& bench, const Scene& scene, const Shot& shot) {
   if (makesImages(bench)) return ratiosToNothing(bench, scene, shot, kReferenceSamples);
   const auto error = bench.voxelError(scene, shot);
@@ -37,7 +38,7 @@ std::map<std::string, Measured> badnessOf(Bench& bench, const Scene& scene, cons
   return {{"voxels", {1.0 - error->recall(), 0.0}}};
 }
 
-/// `shot` against bounds, which the battery's own values may exceed already: then against those.
+/// Judges `shot` against bounds, or against the battery's values where these already exceed them.
 std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary) {
   const Scene scene = suitableScene(bench);
   const bool images = makesImages(bench);
@@ -66,7 +67,7 @@ std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary)
   return worst;
 }
 
-/// Collects them; a `Place` puts a value into a shot.
+/// Collects the cases; a `Place` puts a value into a shot.
 class ParameterCases {
  public:
   using Place = std::function<void(Shot&, const ParameterValue&)>;

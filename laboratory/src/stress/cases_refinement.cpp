@@ -1,5 +1,5 @@
-// Refinement: every number that a pipeline declares is doubled some times. Errors must fall, or what limits
-// them is named.
+// Refinement: doubles every number that a pipeline declares several times. Errors must fall, or the case
+// names what limits them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace lumivox::stress {
 namespace {
 
 constexpr double kLongestLevel =
-    25.0;  // s; after a slower one no finer one is tried (it may take 8 times as long)
-constexpr double kTolerance = 0.05;  // relative growth of an error that is not told from rest
+    25.0;  // s; after a slower point no finer one is tried, which may take 8 times as long
+constexpr double kTolerance = 0.05;  // relative growth of an error that counts as none
 
 struct Level {
   double value = 0.0;
   Measured error;     ///< of the reference's mean; uncertainty: of the reference's noise
-  ImageBuffer image;  ///< of the component that is judged; empty where only an error is known
+  ImageBuffer image;  ///< that of the judged component; empty where only an error is known
   FrameResult frame;
 };
 
@@ -47,7 +47,7 @@ std::vector<double> valuesOf(const PipelineParameter& parameter, bool quick) {
   std::vector<double> values;
   for (int i = 0; i < (quick ? 3 : 5); ++i) {
     const double value = std::ldexp(first, i);
-    // Numbers that are whole in the text are counts.
+    // Numbers written as integers are counts.
     const double rounded = parameter.value.number == std::round(parameter.value.number)
                                ? std::max(1.0, std::round(value))
                                : value;
@@ -58,7 +58,7 @@ std::vector<double> valuesOf(const PipelineParameter& parameter, bool quick) {
   return values;
 }
 
-/// The term that keeps the error from falling further.
+/// Names the term that limits the error.
 std::string limitingTerm(const std::vector<Level>& levels, const std::vector<double>& values,
                          const std::vector<double>& errors, const std::vector<double>& changes) {
   const Measured& last = levels.back().error;
@@ -96,7 +96,7 @@ Finding judge(const std::string& name, const std::string& subject, const std::ve
                         limitingTerm(levels, values, errors, changes));
   if (!remark.empty()) detail += "; " + remark;
   const double smallest = std::max(first.value, std::max(first.uncertainty, 1e-6));
-  // Growth within the reference's noise is none.
+  // Growth within the reference's noise does not count.
   const double noise = 2.0 * last.uncertainty / smallest;
   Finding finding =
       judged(fmt::format("error at the largest {} over the error at the smallest", name),
@@ -107,8 +107,8 @@ Finding judge(const std::string& name, const std::string& subject, const std::ve
   return finding;
 }
 
-/// The Cornell box seen from below its light, which would drown all other light. Full: with a light of each
-/// kind of shadow; quick: with the one that is cheap.
+/// The Cornell box seen from below its light, which would outshine all other light. Full: with a light of
+/// each kind of shadow; quick: with the cheap one.
 Scene roomOf(const Bench& bench) {
   return bench.sceneFromText(
       fmt::format(R"(scene "Cornell box without its light in sight" {{
@@ -132,7 +132,7 @@ class Refinement {
       scene_ = bench.committedScene("smoke");
   }
 
-  /// One value of the parameter; nullopt where there is nothing to compare.
+  /// Renders one value of the parameter; nullopt where there is nothing to compare.
   std::optional<Level> at(double value) {
     Shot shot = shotOf(value);
     if (makesImages(bench_)) {
@@ -149,8 +149,8 @@ class Refinement {
     return Level{value, {wrong / std::max(all, 1.0), 0.0}, {}, {}};
   }
 
-  /// Fills in errors: of the output that the parameter changes most, against the reference of its component.
-  /// Returns its name; empty where no output has a reference.
+  /// Fills in the errors of the output that the parameter changes most, against the reference of its
+  /// component. Returns its name; empty where no output has a reference.
   std::string judgeImages(std::vector<Level>& levels) {
     const FrameResult &coarse = levels.front().frame, &fine = levels.back().frame;
     std::string chosen;
@@ -199,7 +199,7 @@ std::optional<Finding> refined(Bench& bench, const PipelineParameter& parameter)
       if (!level) return notApplicable("it makes neither an image nor voxels");
       levels.push_back(*level);
     } catch (const Error& refusal) {
-      // A value that needs more than there is ends the refinement; the first two must be possible.
+      // A value that exceeds the device ends the refinement; the first two must be possible.
       if (levels.size() < 2) throw;
       remark = fmt::format("{} {:g} was refused: {}", parameter.name, value, refusal.what());
       break;

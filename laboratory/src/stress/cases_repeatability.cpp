@@ -1,4 +1,4 @@
-// The same bits, whatever happens beside.
+// Repeatability: the same bits in all circumstances.
 #include <fmt/format.h>
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// The same scene in other units, at other places, turned; grids of awkward resolutions.
+// The same scene in other units, at other places and turned; grids of awkward resolutions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,13 +16,12 @@ namespace {
 
 constexpr const char* kScaleAndPlaceFamily = "scale_and_place";
 
-/// The lower half of the Cornell box, its light out of view, with something glossy and thin fog; in the full
-/// battery with one more light of every kind that has a place: every length that some technique uses is in
-/// it.
+/// The lower half of the Cornell box with its light out of view, something glossy and thin fog; in the full
+/// battery also with a light of every kind that has a position. It contains every length that techniques use.
 Scene room(const Bench& bench, bool fog) {
   Scene scene = bench.committedScene("cornell");
   scene.hash = {};
-  // So that no pixel of either size has its centre on an edge, where rounding would decide what it sees.
+  // Keeps the centres of pixels of both sizes off edges, where rounding would decide what they see.
   scene.cameras.front().target = {0.2739, 0.1431, 0.0};
   scene.cameras.front().fov = glm::radians(28.3);
   if (!bench.quick()) {
@@ -82,7 +81,7 @@ std::optional<Finding> quarterTurn(Bench& bench) {
   return movedBy(bench, by, 0.01, "the same scene unturned");
 }
 
-/// Not the same image: walls lie at a slant in the grid. Its light must stay what it was.
+/// The image may change, since walls lie at a slant in the grid, but its light must not.
 std::optional<Finding> turnedBy30(Bench& bench) {
   const Scene scene = room(bench, false);
   Similarity by;
@@ -111,7 +110,7 @@ Finding withoutResolution() {
   return notApplicable("it has no parameter 'resolution'");
 }
 
-/// Voxels, against those of the exact test, beside the same at 64.
+/// Compares voxels with the exact test, beside the same comparison at 64.
 std::optional<Finding> gridOfVoxels(Bench& bench, const Scene& scene, int resolution) {
   const auto fine = bench.voxelError(scene, atResolution(64)),
              error = bench.voxelError(scene, atResolution(resolution));
@@ -121,7 +120,7 @@ std::optional<Finding> gridOfVoxels(Bench& bench, const Scene& scene, int resolu
                 fmt::format("wrong: {:.3g}; at 64: {:.3g}", wrongShare(*error), wrongShare(*fine)));
 }
 
-/// A grid too coarse to show anything, or very fine, still knows how much light there is.
+/// A very coarse or very fine grid must still hold the right amount of light.
 std::optional<Finding> gridAgainstReference(Bench& bench, int resolution) {
   if (bench.parameter("resolution") == nullptr) return withoutResolution();
   if (!makesImages(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
@@ -149,7 +148,7 @@ std::optional<Finding> gridBeside64(Bench& bench, int resolution) {
 
 // ---- walls and voxels ------------------------------------------------------------------------------------
 
-/// The grid of the largest cubic voxels among those that passes fill; nullopt where no pass makes any.
+/// The grid of the largest cubic voxels that passes fill; nullopt where no pass fills any.
 std::optional<VoxelBox> coarsestGrid(const Frame& frame) {
   std::optional<VoxelBox> coarsest;
   for (const VoxelBox& grid : frame.grids) {
@@ -161,7 +160,7 @@ std::optional<VoxelBox> coarsestGrid(const Frame& frame) {
   return coarsest;
 }
 
-/// Distance in voxels from the nearest face, from 0 to 0.5, of the wall that is the farthest from the value
+/// Distance in voxels, from 0 to 0.5, to the nearest face, for the wall whose distance differs most from
 /// `wanted`.
 double offFaces(const VoxelBox& grid, const WallRoom& room, double wanted) {
   double worst = wanted;
@@ -174,8 +173,8 @@ double offFaces(const VoxelBox& grid, const WallRoom& room, double wanted) {
   return worst;
 }
 
-/// Share of the walls' cells, squares of a voxel's side, at which no voxel is occupied: of a wall in a face
-/// on neither of its sides.
+/// Share of the walls' cells, squares of a voxel's side, without an occupied voxel; for a wall in a face, on
+/// neither side.
 double missedShare(const OccupiedVoxels& occupied, const WallRoom& room) {
   constexpr double kRounding = 1e-3;  // voxels
   const glm::dvec3 low =
@@ -202,8 +201,8 @@ double missedShare(const OccupiedVoxels& occupied, const WallRoom& room) {
   return cells == 0 ? 0.0 : static_cast<double>(missed) / static_cast<double>(cells);
 }
 
-/// A room whose walls lie in faces of voxels, exactly but for the rounding of single precision, and the same
-/// with everything in it half a voxel further along each axis, in the very same grid.
+/// A room whose walls lie in faces of voxels, up to single precision, compared with the same room half a
+/// voxel further along each axis in the same grid.
 std::optional<Finding> wallsInFaces(Bench& bench) {
   constexpr double kWanted = 0.9;  // m, of the room
   Shot shot;
@@ -223,7 +222,7 @@ std::optional<Finding> wallsInFaces(Bench& bench) {
   halfOff = {inFaces.low + 0.5 * voxel, inFaces.size};
   const Frame got = bench.render(roomInBounds(inFaces), shot),
               wanted = bench.render(roomInBounds(halfOff), shot);
-  // A case about faces is worth nothing when the grid has moved with the room.
+  // The case about faces requires that the grid has not moved with the room.
   constexpr double kRounding = 1e-3;  // voxels
   const double distances[] = {offFaces(coarsestGrid(got).value(), inFaces, 0.0),
                               offFaces(coarsestGrid(wanted).value(), halfOff, 0.5)};

@@ -15,9 +15,8 @@ namespace {
 
 // ---- closed box ------------------------------------------------------------------------------------------
 
-/// A room of one albedo a whose walls all shine with radiance 1. By symmetry the radiance is the same
-/// everywhere, so every bounce multiplies it by a: N bounces show 1 + a + ... + a^(N+1), all of them
-/// 1 / (1 - a).
+/// A room of albedo a whose walls all emit radiance 1. By symmetry the radiance is the same everywhere and
+/// every bounce multiplies it by a: N bounces give 1 + a + ... + a^(N+1), all bounces 1 / (1 - a).
 Scene closedBox(const Bench& bench, double albedo) {
   return bench.sceneFromText(fmt::format(R"(scene "Closed box" {{
   camera main {{ eye 0.3 -0.2 0.8  target -0.2 0 -1  fov 60 deg  resolution 48 48 }}
@@ -30,10 +29,10 @@ Scene closedBox(const Bench& bench, double albedo) {
 
 /// The convergence of the path tracer's sum over bounces.
 struct ReferenceSeries {
-  double radius = 0.0;     ///< measured share that a further bounce leaves of what is missing
+  double radius = 0.0;     ///< measured share of the missing light that a further bounce leaves
   int bounces = 0;         ///< the most that were measured
-  double missing = 0.0;    ///< share of the whole that is missing after them, measured
-  double ofDefault = 0.0;  ///< the same after the default number of bounces
+  double missing = 0.0;    ///< measured share of the whole that is missing after them
+  double ofDefault = 0.0;  ///< that share after the default number of bounces
 };
 
 constexpr double kTelling = 0.1;  // share of missing light that the reference's noise does not hide
@@ -87,12 +86,12 @@ std::optional<Finding> missingOfClosedBox(Bench& bench, double albedo) {
   return finding;
 }
 
-/// The part of the transport that the pipeline has a component for, in closed form: direct light is
-/// E (1 + a), one bounce adds E a^2.
+/// The part of the transport that the pipeline has components for, in closed form: direct light is E (1 + a),
+/// one bounce adds E a^2.
 std::optional<Finding> bounceOfClosedBox(Bench& bench) {
   if (!makesImages(bench)) return notApplicable("it makes no image");
   constexpr double kAlbedo = 0.999;
-  // The walls around are the light: few samples of it say little about the points near them.
+  // The surrounding walls are the light: few samples of them say little about nearby points.
   Shot shot;
   shot.parameters["area_samples"].number = 64;
   const Frame frame = bench.render(closedBox(bench, kAlbedo), shot);
@@ -115,7 +114,7 @@ std::optional<Finding> bounceOfClosedBox(Bench& bench) {
 
 // ---- iterations ------------------------------------------------------------------------------------------
 
-/// Names of parameters that count the steps of an iteration.
+/// The parameter that counts the steps of an iteration; null where there is none.
 const PipelineParameter* iterationParameter(const Bench& bench) {
   for (const char* name : {"iterations", "bounces", "propagations"})
     if (const PipelineParameter* parameter = bench.parameter(name)) return parameter;
@@ -169,15 +168,15 @@ std::optional<Finding> thousandIterations(Bench& bench) {
 
 // ---- media -----------------------------------------------------------------------------------------------
 
-/// An even slab 0 <= z <= 1 m, far wider than the camera sees, before an environment. Nothing but the slab is
-/// there, so that single scattering has a closed form in every pixel.
+/// A uniform slab 0 <= z <= 1 m, far wider than the view, before an environment. The scene holds nothing
+/// else, so that single scattering has a closed form in every pixel.
 struct Slab {
   double extinction = 1.0;  ///< 1/m
   double albedo = 0.5, anisotropy = 0.0;
   double environment = 0.0;                   ///< radiance
-  glm::dvec3 light{0.3, -0.5, -0.8};          ///< the way it travels
+  glm::dvec3 light{0.3, -0.5, -0.8};          ///< direction in which it travels
   double fov = 30.0;                          ///< deg
-  static constexpr double kIrradiance = 3.0;  ///< across the light's direction
+  static constexpr double kIrradiance = 3.0;  ///< on a plane across the light's direction
 
   Scene scene(const Bench& bench) const {
     return bench.sceneFromText(fmt::format(R"(scene "Slab" {{
@@ -254,8 +253,8 @@ std::optional<Finding> extinctions(Bench& bench) {
 }
 
 std::optional<Finding> narrowPhase(Bench& bench, double anisotropy) {
-  // A peak of 0.06 degrees is seen over some 100 pixels: in the light for forward scattering, with it for
-  // backward.
+  // A peak of 0.06 degrees spans some 100 pixels: the camera looks towards the light for forward scattering
+  // and away from it for backward scattering.
   Slab slab;
   slab.extinction = 0.05;
   slab.anisotropy = anisotropy;
@@ -285,7 +284,8 @@ ImageBuffer shrunk(const ImageBuffer& image, int factor) {
   return result;
 }
 
-/// Smoke that varies, from thin to opaque, with the same steps, against the reference of single scattering.
+/// Compares heterogeneous smoke, from thin to opaque at the same steps, with the reference of single
+/// scattering.
 std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
   const auto smoke = [&](double extinction) {
     return bench.sceneFromText(fmt::format(R"(scene "Smoke" {{
@@ -313,7 +313,7 @@ std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
     shot.time = 1.0;
     shot.parameters["pixels"].word = "full";
     shot.width = shot.height = kSide;
-    // In thin smoke paths are short, and few of them are scattered.
+    // In thin smoke few paths scatter.
     const LayeredImage reference = bench.reference(scene, shot,
                                                    extinction < 1.0   ? 4096
                                                    : extinction < 1e3 ? 256
@@ -330,7 +330,7 @@ std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
       bench.show(image);
     };
     note(difference, frame.whole);
-    // In the image the light behind the smoke outshines it, and single pixels of its reference are noise.
+    // The light behind the smoke outshines it in the image, and single pixels of its reference are noisy.
     for (const auto& [name, component] : frame.result.components) {
       if (component != Contributes::scattered) continue;
       const ImageBuffer& scattered = frame.result.outputs.at(name);
@@ -350,7 +350,7 @@ std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
 
 // ---- bright beside dark ----------------------------------------------------------------------------------
 
-/// Two closed rooms with a light each; the camera is in the left one, whose light has the intensity 1.
+/// Two closed rooms with a light each. The camera is in the left one, whose light has intensity 1.
 Scene twoRooms(const Bench& bench, double gap, double otherIntensity) {
   return bench.sceneFromText(fmt::format(R"(scene "Bright and dark" {{
   camera main {{ eye -0.3 0.1 0.4  target 0.2 -0.1 -0.5  fov 60 deg  resolution 48 48 }}
@@ -364,7 +364,7 @@ Scene twoRooms(const Bench& bench, double gap, double otherIntensity) {
                                          1.0 + gap, 1.1 + gap, otherIntensity));
 }
 
-/// The rooms are closed, so that the other light changes nothing.
+/// The rooms are closed, so that the other light must change nothing.
 std::optional<Finding> brightAndDark(Bench& bench, double gap, double limit) {
   if (!makesImages(bench)) return notApplicable("it makes no image");
   const Frame alone = bench.render(twoRooms(bench, gap, 0.0));

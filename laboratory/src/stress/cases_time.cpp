@@ -1,4 +1,4 @@
-// Time: whatever was rendered before, a frame is the frame that a fresh start would have made.
+// Time: a frame equals that of a fresh start, whatever was rendered before.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kBox = "room/box";
 
-/// A camera on a path, a box that turns and travels, an area light that travels, sky and rising smoke; full:
-/// sun.
+/// A camera on a path, a turning and travelling box, a travelling area light, sky and rising smoke; full:
+/// also a sun.
 Scene everythingMoves(const Bench& bench) {
   std::string text = R"(scene "Everything moves" {
   camera main {
@@ -47,7 +47,7 @@ Scene everythingMoves(const Bench& bench) {
   return bench.sceneFromText(text + "}\n");
 }
 
-/// How many numbers of two frames' images differ in a bit, and by how much at most.
+/// Number of values of two frames' images that differ in a bit, and the largest difference.
 struct Difference {
   std::size_t count = 0, total = 0;
   double largest = 0.0;
@@ -64,13 +64,13 @@ struct Difference {
 /// Whether the last frame differs from the one before it.
 enum class Step { moves, rests };
 
-/// The last frame of a sequence against the same frame of a fresh start.
+/// Compares the last frame of a sequence with the same frame of a fresh start.
 Finding lastAgainstAlone(Bench& bench, const Scene& scene, const std::vector<double>& times,
                          const Edit& edit = {}, Step kind = Step::moves) {
   const char* const measure = "share of the last frame's numbers that differ from the same frame alone";
   const std::size_t last = times.size() - 1;
   const Edit editLast = [&](std::size_t, SceneSnapshot& snapshot) { edit(last, snapshot); };
-  // Remains of earlier frames show in few samples and pixels too.
+  // Remains of earlier frames also show with few samples and pixels.
   Shot shot;
   if (bench.quick()) {
     shot.width = shot.height = 32;
@@ -87,7 +87,7 @@ Finding lastAgainstAlone(Bench& bench, const Scene& scene, const std::vector<dou
   }
   const std::vector<Frame> frames = bench.renderSequence(scene, times, shot, edit);
   const Frame& sequence = frames.back();
-  // Without a change before it the last frame would prove nothing.
+  // The last frame proves nothing unless something changed before it.
   if (kind == Step::moves && frames[last - 1].compared.values() == sequence.compared.values())
     throw Error("the last two frames are the same: the case shows nothing");
   const Frame fresh = bench.renderSequence(scene, {times[last]}, alone, edit ? editLast : Edit{}).back();
@@ -143,8 +143,8 @@ std::optional<Finding> teleportedCamera(Bench& bench) {
   });
 }
 
-/// A camera that stands, jumps and comes back while frames go on from those before: what it sees then must
-/// be what a fresh start at that view has after as many frames.
+/// A camera stands, jumps and returns while frames accumulate. Its image must then equal that of a fresh
+/// start at that view after as many frames.
 std::optional<Finding> accumulatingTeleport(Bench& bench) {
   if (!experiment::isProgressive(bench.pipeline(), bench.techniques()))
     return notApplicable("no pass of it goes on from earlier frames");

@@ -1,4 +1,4 @@
-// Frames rendered by another process.
+// Renders frames in another process.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lumivox::stress {
 
-/// Error when there is no program to start, or when it gives no answer within a minute.
+/// Error without a program to start, or without an answer within a minute.
 std::uint64_t askForContent(const Ground& ground, const ContentRequest& request,
                             const std::vector<std::string>& environment);
 

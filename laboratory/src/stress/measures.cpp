@@ -24,7 +24,7 @@ bool isIndirect(Contributes component) {
   return component == Contributes::indirectDiffuse || component == Contributes::indirectGlossy;
 }
 
-/// Paths a pixel of the references that the battery compares with.
+/// Paths per pixel of the battery's references.
 int referenceSamples(const Bench& bench) {
   return bench.quick() ? 64 : 1024;
 }

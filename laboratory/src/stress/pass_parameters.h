@@ -1,4 +1,4 @@
-// Parameters of single passes, which a pipeline's text may have left at their defaults.
+// Parameters of single passes, also those that a pipeline's text leaves at their defaults.
 #pragma once
 
 #include <string>
@@ -15,14 +15,14 @@ struct PassParameter {
   ParamBase::Type type;
   double low = 0.0, high = 0.0;  ///< of numbers
   std::vector<std::string> words;
-  std::string value;   ///< as the text sets it, or the default
-  bool bound = false;  ///< a parameter of the pipeline stands for it, or `as_published on` of its pass
+  std::string value;   ///< set by the text, or the default
+  bool bound = false;  ///< set by a parameter of the pipeline, or by `as_published on` of its pass
 };
 std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
-/// Those that are not bound.
+/// The parameters that are not bound.
 std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
 
-/// The same text with these parameters of passes set, by "pass.parameter". Error for an unknown pass.
+/// The same text with these pass parameters set, by "pass.parameter". Error for an unknown pass.
 Pipeline withPassParameters(const Pipeline& pipeline, const ParameterValues& values);
 
 }  // namespace lumivox::stress

@@ -1,4 +1,4 @@
-// Which cells a battery has.
+// Plans the cells of a battery.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
@@ -47,7 +47,7 @@ bool chosen(const std::vector<std::string>& wanted, const std::string& name) {
          });
 }
 
-/// A word that nothing answers to is a slip of the pen.
+/// Refuses a word that matches nothing, which is a typing error.
 void requireKnown(const char* what, const std::vector<std::string>& wanted,
                   const std::set<std::string>& known) {
   for (const std::string& word : wanted) {
@@ -87,7 +87,7 @@ std::vector<StressJob> plannedStress(const StressOptions& options, TechniqueSour
       families.insert(one.info.family);
       names.insert(one.info.name);
       if (!options.technique.empty() && subject != options.technique) continue;
-      // A case that is named is run, quick or not.
+      // A named case is run, quick or not.
       if (options.quick && options.cases.empty() && !one.info.quick) continue;
       if (chosen(options.families, one.info.family) && chosen(options.cases, one.info.name))
         jobs.push_back({std::move(one.info), file, subject});

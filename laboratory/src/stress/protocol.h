@@ -1,4 +1,4 @@
-// Messages between the battery and its workers: one JSON object a line.
+// Messages between the battery and its workers: one JSON object per line.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@
 
 namespace lumivox::stress {
 
-/// The first message of a worker, when its device is open, before anything is asked.
+/// A worker's first message, sent once its device is open.
 struct WorkerDevice {
   std::string device, driver, shaderInput;  ///< as in StressCell
-  bool software = false;                    ///< rasterises on the processors
+  bool software = false;                    ///< whether it rasterises on the processors
 };
 WorkerDevice workerDeviceOf(const gpu::Device& device);
 std::string lineOf(const WorkerDevice& ready);
-/// Nullopt for a line that says anything else.
+/// Nullopt for any other line.
 std::optional<WorkerDevice> readyFrom(const std::string& line);
 
 /// One cell to be run.
@@ -26,9 +26,9 @@ struct CellRequest {
   std::filesystem::path pipeline;
   std::string name;  ///< of the case
   bool quick = false;
-  std::filesystem::path image;  ///< where to; empty: nowhere
+  std::filesystem::path image;  ///< where to write it; empty: nowhere
 };
-/// The content of a frame: Bench::contentOf() for another process.
+/// A request for the content of a frame: Bench::contentOf() for another process.
 struct ContentRequest {
   std::filesystem::path pipeline;
   std::string committedScene;
@@ -43,7 +43,7 @@ struct AnyRequest {
   std::optional<CellRequest> cell;
   std::optional<ContentRequest> content;
 };
-/// Error for a line that is none.
+/// Error for a line that is not a request.
 AnyRequest requestOf(const std::string& line);
 
 }  // namespace lumivox::stress

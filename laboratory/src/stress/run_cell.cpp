@@ -37,7 +37,7 @@ void end(StressCell& cell, StressOutcome outcome, std::string detail) {
   cell.detail = std::move(detail);
 }
 
-/// Whatever is thrown by bad input is a refusal; what is no Error was not foreseen.
+/// An Error is a refusal of bad input; any other exception was not foreseen.
 void runGuarded(const Case& one, Bench& bench, StressCell& cell) {
   try {
     std::optional<Finding> finding = one.run(bench);

@@ -1,4 +1,4 @@
-// One cell of the matrix, in this process.
+// Runs one cell of the matrix in this process.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace lumivox::stress {
 
-/// Everything about a cell that is known before it runs: also what a cell says whose worker died.
+/// Everything known about a cell before it runs, which is all that remains if its worker dies.
 StressCell cellBefore(const CellRequest& request, const std::string& family, TechniqueSource& techniques,
                       const std::vector<std::string>& repeatArguments);
 
-/// Runs it and fills in the rest. Whatever the case throws becomes an outcome.
+/// Runs a cell and fills in the rest. An exception of the case becomes an outcome.
 StressCell runCell(Ground& ground, const CellRequest& request,
                    const std::vector<std::string>& repeatArguments);
 

@@ -9,7 +9,7 @@
 namespace lumivox::stress {
 namespace {
 
-/// Boxes stay boxes under rotations that map axes to axes.
+/// Boxes remain boxes under rotations that map axes to axes.
 bool mapsAxesToAxes(const glm::dmat3& rotation) {
   constexpr double kRounding = 1e-9;
   for (int column = 0; column < 3; ++column)
@@ -95,7 +95,7 @@ glm::dmat3 turnAboutY(double angle) {
 Scene moved(const Scene& scene, const Similarity& by) {
   const Mover mover(by);
   Scene result = scene;
-  result.hash = {};  // no longer that of a text
+  result.hash = {};  // no longer the hash of a text
   for (Object& object : result.objects) mover.move(object);
   for (Light& light : result.lights) mover.move(light);
   for (Camera& camera : result.cameras) mover.move(camera);
@@ -173,7 +173,7 @@ Scene twoRooms(float wall) {
   SceneBuilder builder;
   const int white = builder.lambert(0.7f);
   const float half = 0.5f * wall;
-  // One sheet belongs to both rooms; it faces the lit one.
+  // One sheet belongs to both rooms and faces the lit one.
   builder.box({-1.0f - half, 0, 0}, {-half, 1, 1}, white, true);
   if (wall > 0.0f) {
     builder.box({half, 0, 0}, {1.0f + half, 1, 1}, white, true);
@@ -211,7 +211,7 @@ Scene glowingSpeck(int cells) {
   const int black = builder.lambert(0.0f), grey = builder.lambert(0.5f);
   builder.box({0, 0, 0}, {1, 1, 1}, grey, true);
   for (Part& part : builder.scene.objects[2].parts) part.material = black;  // the floor
-  // Off the middle, where grids of even resolutions have a voxel's face, and smaller than a voxel of theirs.
+  // Smaller than a voxel, and off the middle, where grids of even resolutions have a face.
   const glm::vec3 corner(0.505f, 0.505f, 0.505f);
   builder.mesh(gridOfTriangles(corner, {0, 0, 0.004f}, {0.004f, 0, 0}, cells, cells), grey);
   Light& spot = builder.light(LightKind::spot, glm::vec3(1000.0f), {0.507, 0.8, 0.507});

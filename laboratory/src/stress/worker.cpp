@@ -18,7 +18,7 @@ namespace {
 using namespace stress;
 using Json = nlohmann::ordered_json;
 
-/// Standard output for answers alone: what a driver or a library prints goes to standard error.
+/// Reserves standard output for answers; output of drivers and libraries goes to standard error.
 class Answers {
  public:
   Answers() : file_(fdopen(dup(STDOUT_FILENO), "w")) {
@@ -56,7 +56,7 @@ std::string contentAnswer(Ground& ground, const ContentRequest& request) {
 
 void serveStress(const StressWorker& worker, TechniqueSource& techniques) {
   Answers answers;
-  // Those that come with the program: a project of one's own has other scenes, or none.
+  // The scenes that come with the program, since a user's project has others or none.
   const auto stress = programData("scenes/stress");
   if (!stress) throw Error("the scenes that stress cases are made from are missing; expected scenes/stress");
   gpu::Device device(worker.device);
