@@ -62,6 +62,7 @@ class LightsPass : public Pass {
                                .flux = layers(gpu::Format::rgba32f, "flux of pixels"),
                                .lightCount = frames->count,
                                .layerCount = frames->count,
+                               .captured = true,
                                .overlapping = 1};
     if (frames->count == 0)
       for (const gpu::TextureRef& texture : {result.position, result.normal, result.flux})

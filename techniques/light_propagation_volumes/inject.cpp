@@ -158,7 +158,7 @@ class InjectRsmPass : public Inject {
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     if (!map.present() || map->lightCount == 0) return;
     // The grids bound virtual content; captured walls lie beyond them.
-    if (map->views == nullptr)
+    if (map->captured)
       throw Error(
           "a captured map, most of which lies outside of the grids around the virtual content; expected a map of "
           "lights");

@@ -130,7 +130,7 @@ class GatherPass : public Pass {
     if (method == Method::lights)
       return addAll(lights->count, 0, Variant::methodLights, {gather::taken(lights->lights)});
     parameters.width = map->flux->description().width;
-    if (method == Method::projected && map->views == nullptr)
+    if (method == Method::projected && map->captured)
       throw Error(
           "'method projected' of a map without views of lights, such as a captured one; expected lights or all");
     const ReflectiveShadowMapBinding texels(*map);

@@ -97,9 +97,10 @@ BlockSpecification camera() {
        Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
            .between(0.1 * kDegree, 179.0 * kDegree)
            .byDefault("40 deg"),
-       Row("resolution", PropertyType::resolution, "width and height of the image in pixels")
+       Row("resolution", PropertyType::resolution,
+           "width and height of the image in pixels; of a camera of a capture: of the capture's pictures unless given")
            .between(1, kLargestImage)
-           .byDefault("256 256, or the capture's"),
+           .byDefault("256 256"),
        Row("aperture", PropertyType::number,
            "diameter of the thin lens, which blurs what is not in focus; 0 is a pinhole", dsl::kLength)
            .between(0, kLargestLens)

@@ -19,7 +19,8 @@ struct ReflectiveShadowMap {
   gpu::TextureRef specular = nullptr;  ///< null also where nothing is glossy
   int lightCount = 0;
   int layerCount = 0;
-  int overlapping = 0;  ///< most lights that see one patch of surface; 0: all may
+  bool captured = false;  ///< by a depth camera: of what stands around virtual content; no views
+  int overlapping = 0;    ///< most lights that see one patch of surface; 0: all may
 };
 
 template <>
