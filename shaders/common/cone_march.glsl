@@ -71,7 +71,8 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     float height = offset * voxelSize + cosTheta * distance;
     float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
     // Where voxels are partly covered, the step is read again with voxels of half the size, and so on; behind empty steps voxels grow
-    // again. If leastShare is 0, opaque voxels are refined too: a cone that leaves a surface must not take its own coarse voxel for a wall.
+    // again. If leastShare is 0, this goes down to the finest voxels, opaque ones included: a cone that leaves a surface must not take its
+    // own coarse voxel for a wall.
     wanted = max(wanted * share, min(wanted, voxelSize));
     // The last step ends at the border of the grid, so that walls there are read in full.
     float stride = min(min(stepShare * max(wanted / footprint, voxelSize), longestStep(wanted)), end - distance) * firstShare;
