@@ -50,7 +50,7 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
   vec3 albedo = material.diffuse.rgb;
   float coverage = 1.0;
   vec2 texcoord = cornerTexcoords[0] * weights.x + cornerTexcoords[1] * weights.y + cornerTexcoords[2] * weights.z;
-  // A column is a voxel wide: the gradients of the affine map select the mip that averages over a voxel.
+  // A column is one voxel wide: the gradients of the affine map select the mip level that averages over a voxel.
   vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy;
   vec2 t1 = cornerTexcoords[1] - cornerTexcoords[0], t2 = cornerTexcoords[2] - cornerTexcoords[0];
   float doubleArea = e1.x * e2.y - e1.y * e2.x;

@@ -1,8 +1,7 @@
 #version 450
-// Mavridis & Papaioannou 2011, Sec. 3.3, Eq. 3: the light that arrives at the centre of each voxel from all sides, by rays through the
-// volume. OF light: the radiance that voxels emit; OF openness: 1 for rays without a hit within their reach, 0 for the others (Sec. 3.5,
-// Eq. 6). WALK steps: tests fixed steps; WALK exact: tests every voxel on the ray (common/bit_grid.glsl). LISTED: only the voxels of a
-// list.
+// Mavridis & Papaioannou 2011, Sec. 3.3, Eq. 3: the light that arrives at the centre of each voxel from all sides, by ray marching.
+// OF light: the radiance that voxels emit; OF openness: 1 for rays without a hit within their reach, 0 for the others (Sec. 3.5, Eq. 6).
+// WALK steps: tests fixed steps; WALK exact: tests every voxel on the ray (common/bit_grid.glsl). LISTED: only the voxels of a list.
 #pragma lumivox axis OF light openness
 #pragma lumivox axis WALK steps exact
 #pragma lumivox axis LISTED 0 1

@@ -1,7 +1,7 @@
 #version 450
 // The same iteration in the structure of thesis 004 Listing 4.32: it loops over every face of every neighbour, computes direction, solid
-// angle and harmonics on the fly, and visits every cell. It is the reference for propagate.comp, and has the published transfer. OCCLUSION
-// normals: the light of a cell is occluded by the lobe of the normal in it that is closest to the light's direction (Listing 4.33).
+// angle and harmonics on the fly, and visits every cell. It is the reference for propagate.comp, and has the published transfer.
+// OCCLUSION normals: the lobe of the normal in a cell that is closest to the light's direction occludes the cell's light (Listing 4.33).
 #pragma lumivox axis OCCLUSION faces normals
 #include "propagation.glsl"
 #if OCCLUSION == OCCLUSION_NORMALS

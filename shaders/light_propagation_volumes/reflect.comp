@@ -1,7 +1,8 @@
 #version 450
 // The reflection grid (thesis 004 Sec. 4.3.4, Listing 4.34): the light that leaves the surfaces in the voxels of a finer grid. One dispatch
-// per grid of propagated light, the coarsest first. Deviates: Listing 4.34 multiplies the albedo by the mean of the light from all sides.
-// Here a voxel emits the flux that crosses the face in front of it outwards, which is exactly the light that its surface reflects.
+// per grid of propagated light, the coarsest first.
+// Deviates: Listing 4.34 multiplies the albedo by the mean of the light from all sides. Here a voxel emits the flux that crosses the face
+// in front of it outwards, which is exactly the light that its surface reflects.
 #include "cells.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -1,5 +1,5 @@
-// The bricks of an octree by depth, for passes over them (Listing 4.20). Included after the local size of kOctreeGroup, which is along x
-// only. C++ side: OctreeNodes in octree_ports.h, forEachBrick in octree.h of techniques/thesis_cone_tracing.
+// The bricks of an octree by depth, for passes over them (Listing 4.20). Included after the local size, kOctreeGroup along x only.
+// C++ side: OctreeNodes in octree_ports.h, forEachBrick in octree.h of techniques/thesis_cone_tracing.
 #ifndef LUMIVOX_THESIS_OCTREE_LEVELS
 #define LUMIVOX_THESIS_OCTREE_LEVELS
 #include "common/list.glsl"

@@ -12,7 +12,7 @@ layout(std140, binding = 1) uniform FieldParameters {
   ivec3 gridResolution;
   int fieldChannels;     // of a value: 1 or 3
   ivec3 textureOf;       // texture of each channel; componentOf: its component
-  int marksCount;        // 1: marks are numbers of items; 0: bits, 32 voxels along z in a word
+  int marksCount;        // 1: marks are numbers of items; 0: bits, 32 voxels along z per word
   ivec3 componentOf;
 };
 float shortestSide() { return min(voxelSides.x, min(voxelSides.y, voxelSides.z)); }

@@ -1,7 +1,8 @@
 #version 450
-// Averages the radiance that the fragments of a voxel reflect. Deviates from thesis 004 Listing 4.9, whose running average in 8 bits
-// depends on the order of the writes and overflows past 255 fragments. Here each fragment adds its share of an integer mean, in units of
-// the brightest fragment of its voxel (common/integer_mean.glsl).
+// Averages the radiance that the fragments of a voxel reflect.
+// Deviates from thesis 004 Listing 4.9, whose running average in 8 bits depends on the order of the writes and overflows past 255
+// fragments. Here each fragment adds its share of an integer mean, in units of the brightest fragment of its voxel
+// (common/integer_mean.glsl).
 //
 // DIRECTIONS: one average per face of the voxel, weighted by the cosine between the normals of face and fragment, so that the two sides of
 // a wall stay separate. The back of a fragment has the small weight backWeight, so that it counts only for a face without fronts: the
@@ -9,7 +10,7 @@
 // normal along the axis over the largest component: a sheet is opaque along the axis that it faces and open along itself (alongAll: opaque
 // along all axes).
 //
-// SAMPLED: the opacity also has the samples of the voxel's sides that any fragment covers, beside the sum of the coverages.
+// SAMPLED: `opacity` also stores the covered samples of the voxel's sides, beside the sum of the coverages.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis SAMPLED 0 1
 #pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)

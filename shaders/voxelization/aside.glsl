@@ -1,5 +1,5 @@
-// Items with too much work for one thread: one dispatch puts them aside, and the next, an indirect dispatch, spreads each over many
-// threads. C++ side: aside.h.
+// Items with too much work for one thread: one dispatch puts them aside; the next, an indirect dispatch, spreads each over many threads.
+// C++ side: aside.h.
 layout(std430, binding = 9) buffer Aside {
   uint asideGroupsX, asideGroupsY, asideGroupsZ;  // of the dispatch over the items
   uint asideCount;

@@ -1,9 +1,9 @@
 #version 450
 // Opacity by multisampling (3D clipmaps; thesis 004 Sec. 3.5.2): the samples of a pixel that a triangle covers lie in one to three voxels
-// of the column; the number of samples in a voxel gives its coverage by the triangle. TARGET list: one fragment per voxel, with this
-// coverage. TARGET masks: the samples, as bits of the voxel's three sides; samples are also projected into the other two planes, with the
-// surface thickened along its dominant axis. The pixels of TARGET list may be smaller than a voxel (adaptive supersampling, Sec. 3.5.2):
-// each covers its share of the voxel's side.
+// of the column; the number of samples in a voxel gives its coverage by the triangle.
+// TARGET list: one fragment per voxel, with this coverage. TARGET masks: the samples, as bits of the voxel's three sides; samples are also
+// projected into the other two planes, with the surface thickened along its dominant axis.
+// The pixels of TARGET list may be smaller than a voxel (adaptive supersampling, Sec. 3.5.2): each covers its share of the voxel's side.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis TARGET list masks

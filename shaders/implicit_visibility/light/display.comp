@@ -1,8 +1,7 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3.1, per pixel: displays values of elements at the visible surfaces. OF irradiance: reflected by the diffuse
-// lobe. OF value: unchanged (openness, or light that the elements reflect by their own lobe). OF segments: one colour per segment (Fig.
-// 3a). FROM neighbours: interpolates the elements around a pixel. FROM vertices: values interpolated over triangles
-// (display_vertices.vert).
+// Dong et al. 2007, Sec. 4.3.1, per pixel: displays values of elements at visible surfaces. OF irradiance: reflected by the diffuse lobe.
+// OF value: unchanged (openness, or light that the elements reflect by their own lobe). OF segments: one colour per segment (Fig. 3a).
+// FROM neighbours: interpolates the elements around a pixel. FROM vertices: values interpolated over triangles (display_vertices.vert).
 #pragma lumivox axis OF irradiance value segments
 #pragma lumivox axis FROM neighbours vertices
 #pragma lumivox axis ADDED 0 1

@@ -3,8 +3,8 @@
 // whose sources differ from the last frame: their children, their voxelized values, the ramp between the two, or the voxel at their
 // address. Marks the listed voxels for the next coarser level.
 //
-// CELLS: voxelized values differ also in changed cells, not only where the level has moved to. LISTED: no level has moved: only the voxels
-// of the cells listed by clipmap_coarser.comp are tested.
+// CELLS: voxelized values differ also in changed cells, not only where the level has moved to.
+// LISTED: no level has moved: only the voxels of the cells listed by clipmap_coarser.comp are tested.
 #pragma lumivox axis ABOVE 0 1
 #pragma lumivox axis CELLS 0 1
 #pragma lumivox axis LISTED 0 1

@@ -3,12 +3,13 @@
 // of each triangle for each level). One invocation tests each pair of a triangle and a box of voxels to be filled, in any level. A level
 // that only moved has boxes for the newly reached voxels.
 //
-// SAMPLED 0: one fragment per voxel that a triangle touches. SAMPLED 1: eight samples in each column along the dominant axis, as in Sec.
-// 3.5.2, which uses multisampled rasterization. The covered samples of a voxel give its opacity along each axis (covered_samples.glsl).
-// Emittance uses the covered share of the voxel's side, with more samples for small triangles, so that the light of a moving object does
-// not jump (Fig. 56). CHANGED: in some boxes, only the voxels in changed cells are filled. STAGE find lists the triangles that touch a box,
-// usually few. As in voxelization, a triangle with many voxels is put aside as rows of tiles of 8 x 8 columns; STAGE large processes one
-// row per work group. STAGE small processes one of the other triangles per invocation.
+// SAMPLED 0: one fragment per voxel that a triangle touches.
+// SAMPLED 1: eight samples in each column along the dominant axis, as in Sec. 3.5.2, which uses multisampled rasterization. The covered
+// samples of a voxel give its opacity along each axis (covered_samples.glsl). Emittance uses the covered share of the voxel's side, with
+// more samples for small triangles, so that the light of a moving object does not jump (Fig. 56).
+// CHANGED: in some boxes, only the voxels in changed cells are filled.
+// STAGE find lists the triangles that touch a box, usually few. As in voxelization, a triangle with many voxels is put aside as rows of
+// tiles of 8 x 8 columns; STAGE large processes one row per work group. STAGE small processes one of the other triangles per invocation.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis STAGE find small large

@@ -6,8 +6,8 @@
 // so that the cones that gather surfaces see it). A voxel of width w and extinction sigma_t has the opacity 1 - exp(-sigma_t w). Its
 // radiance is the light that it scatters, equal in all directions: a voxel has one radiance for all directions.
 //
-// DIRECTIONS: the same for each of the six faces of a voxel. CHANGED: the listed bricks hold values of an earlier frame, so that voxels
-// that have become empty are cleared.
+// DIRECTIONS: the same for each of the six faces of a voxel.
+// CHANGED: the listed bricks hold values of an earlier frame, so that voxels that have become empty are cleared.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis MEDIUM none even varying

@@ -5,8 +5,9 @@
 // Deviates from Crassin et al. 2011, Sec. 5, where coarse voxels lie at the corners of nodes: there a wall one voxel thick between two
 // coarse voxels makes both opaque, and trilinear reads widen it to three coarse voxels.
 //
-// LIT: only the bricks that photons have changed (octree_lit.comp); the others are complete. CHANGED: bricks that have not changed since
-// static geometry was lit are copied from the static octree. DIRECTIONS: voxels with six faces, by the rule of filter_directional.comp.
+// LIT: only the bricks that photons have changed (octree_lit.comp); the others are complete.
+// CHANGED: bricks that have not changed since static geometry was lit are copied from the static octree.
+// DIRECTIONS: voxels with six faces, by the rule of filter_directional.comp.
 #pragma lumivox axis LIT 0 1
 #pragma lumivox axis CHANGED 0 1
 #pragma lumivox axis DIRECTIONS 0 1

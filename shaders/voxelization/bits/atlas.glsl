@@ -1,7 +1,7 @@
 // The list of the atlas texels that lie on the surface (Thiedemann et al. 2011; thesis 004 Sec. 4.4.2, 4.4.3), each with its triangle and
-// the place on the triangle. Including files first include grid_corner.glsl. Deviates: the atlas holds places on triangles, which stay
-// valid, instead of positions, which are rendered again when something moves. The list of its texels is created together with the atlas,
-// without a read-back.
+// the place on the triangle. Including files first include grid_corner.glsl.
+// Deviates: the atlas holds places on triangles, which stay valid, instead of positions, which are rendered again when something moves. The
+// list of its texels is created together with the atlas, without a read-back.
 #include "common/list.glsl"
 
 layout(std430, binding = 9) readonly buffer TexelTriangles { uint texelTriangles[]; };
