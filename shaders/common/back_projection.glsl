@@ -9,8 +9,8 @@ layout(binding = 5) uniform sampler2DArray rsmFlux;
 layout(constant_id = 0) const int taps = 1;       // 1: the texel at the point; 4: bilinear over four texels
 layout(constant_id = 1) const int frontTest = 1;  // whether surfaces that face away from the receiver contribute nothing
 // 1: the tests of Listing 4.49 as printed. The tolerance enlarges only the side of the texel. The slant of the texel is measured against
-// the direction of a sun or spot light, and counts only with frontTest. The receiver is its surface point, an offset away from its ray
-// origins.
+// the direction of a sun or spot light, and counts only with frontTest. The receiver is its surface
+// point, an offset away from its ray origins.
 layout(constant_id = 6) const int printedTests = 0;
 
 layout(std140, binding = 2) uniform BackProjection {

@@ -3,8 +3,8 @@
 //   vec4 finerVoxel(ivec3 at)
 //
 // Along each of the three axes, the children of each column are composited front to back, in both directions, and the columns are averaged:
-// this is the view through the coarse voxel along that axis. The opacity is the largest of the three, that of the axis which a surface
-// faces:
+// this is the view through the coarse voxel along that axis. The opacity is the largest of the three,
+// that of the axis which a surface faces:
 // - A uniform medium of opacity a per voxel gets 1 - (1-a)^2: its transmittance does not depend on the level that a cone reads.
 // - A sheet one voxel thick of opacity a keeps a at every level. The plain mean of the thesis halves its opacity at every level and leaks
 //   light. Any mean over the axes leaks too, more slowly: along the sheet only half of the columns meet it.

@@ -142,8 +142,8 @@ Cone diffuseCone(int i, int count, vec3 normal, vec2 place) {
 // Thesis Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
 const int kPublishedCones = 5;
 const float kTilted = 0.70710678118654752440;
-// Sum of the weights, 1 + 4 / sqrt 2, by which the sum of the cones is divided. The listing does not divide, so that a constant environment
-// gains radiance.
+// Sum of the weights, 1 + 4 / sqrt 2, by which the sum of the cones is divided. The listing does not
+// divide, so that a constant environment gains radiance.
 const float kPublishedWeights = 1.0 + 4.0 * kTilted;
 Cone publishedCone(int i, vec3 normal, float tanHalfAngle) {
   vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);

@@ -6,8 +6,8 @@
 // The number of work groups along an axis that every OpenGL implementation supports (4.5, table 23.72).
 const uint kMostGroups = 65535u;
 
-// Work groups along x and y for a dispatch of at least `groups` work groups: full rows, so that the last row may exceed the list; at least
-// one.
+// Work groups along x and y for a dispatch of at least `groups` work groups: full rows, so that the
+// last row may exceed the list; at least one.
 uvec2 rowsOfGroups(uint groups) {
   return uvec2(min(max(groups, 1u), kMostGroups), max((groups + kMostGroups - 1u) / kMostGroups, 1u));
 }

@@ -1,4 +1,4 @@
-// Overlap test of a triangle with the voxels of a grid. Rasterization and compute passes share it, so that they find the same voxels.
+// Overlap test of a triangle with the voxels of a grid. Rasterisation and compute passes share it, so that they find the same voxels.
 // Coordinates are in voxels, permuted so that z is the dominant axis of the triangle's normal; a column is a row of voxels along z.
 #ifndef LUMIVOX_TRIANGLE
 #define LUMIVOX_TRIANGLE

@@ -1,5 +1,5 @@
-// Rasterization of the surfaces that a camera sees: all programs that use it cover the same pixels at the same depths. Included after
-// scene.glsl.
+// Rasterisation of the surfaces that a camera sees: all programs that use it cover the same pixels at
+// the same depths. Included after scene.glsl.
 // C++ side: framework/include/lumivox/toolkit/visible_surface.h.
 #ifndef LUMIVOX_VISIBLE_SURFACE
 #define LUMIVOX_VISIBLE_SURFACE
@@ -24,7 +24,7 @@ layout(binding = 1) uniform sampler2D maskTexture;
 bool isHole(vec2 texcoord) { return texture(maskTexture, texcoord).r < kMaskThreshold; }
 #endif
 
-// Whether this pixel's ray misses the surface. A triangle whose plane contains the eye has no area in the image, but the rasterizer snaps
+// Whether this pixel's ray misses the surface. A triangle whose plane contains the eye has no area in the image, but the rasteriser snaps
 // its corners to sub-pixel steps, so that its fragments may lie anywhere in its plane.
 bool isElsewhere(vec3 posWorld) {
   const float kTolerance = 2.0;  // pixels: more than rounding moves a visible triangle

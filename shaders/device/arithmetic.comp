@@ -1,6 +1,6 @@
 #version 450
-// Arithmetic in registers: eight independent chains, so that no latency shows. Each chain converges to a known number, which the caller
-// checks.
+// Arithmetic in registers: eight independent chains, so that no latency shows. Each chain converges to
+// a known number, which the caller checks.
 #pragma lumivox axis FUNCTION product fused integer exponential sine root
 
 layout(local_size_x = 512) in;

@@ -1,7 +1,7 @@
 #version 450
 // Between two bounces: occupied voxels reflect the light that arrives at them. Mavridis & Papaioannou 2011, end of Sec. 3.3, alternate two
-// buffers and do not say how light is reflected. Here each side of a voxel's surface emits its irradiance, times albedo / pi, into its half
-// space.
+// buffers and do not say how light is reflected. Here each side of a voxel's surface emits its
+// irradiance, times albedo / pi, into its half space.
 #define VOLUMES 3
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "reconstruct.glsl"

@@ -78,8 +78,8 @@ vec3 shoneByView(LightSample light, int view, vec3 at, vec3 direction, float siz
     vec3 normal = textureLod(normalLayers, texcoord, level).xyz;
     if (facingRule != 0 && dot(normal, direction) >= 0.0) continue;
     float slant = abs(dot(normal, toView)) * inversesqrt(max(dot(normal, normal), 1e-12));
-    // Extent of a slab of this thickness in depth: along the ray to the point thickness / slant, along the view's axis less by the ray's
-    // cosine.
+    // Extent of a slab of this thickness in depth: along the ray to the point thickness / slant, along
+    // the view's axis less by the ray's cosine.
     float along = slantRule != 0 ? thickness * depthOfRay / max(slant, kLeastSlant) : thickness;
     vec2 moments = textureLod(depthLayers, texcoord, level).xy / radiance.a;
     vec2 ends = (off + vec2(-0.5, 0.5) * along) / layer.halfWidth;

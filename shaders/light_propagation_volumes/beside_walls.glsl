@@ -11,8 +11,8 @@ int movedSteps(ivec3 face, int axis, bool above) {
   return above ? steps & 15 : steps >> 4;
 }
 
-// The cell of a surface point, given the cell in front of its surface, which mostly faces the axis `dominant`: moved in front of walls
-// beside it.
+// The cell of a surface point, given the cell in front of its surface, which mostly faces the axis
+// `dominant`: moved in front of walls beside it.
 ivec3 besideWalls(ivec3 cell, vec3 position, int dominant) {
   for (int i = 1; i <= 2; ++i) {
     int axis = (dominant + i) % 3;

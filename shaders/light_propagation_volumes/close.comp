@@ -41,8 +41,8 @@ void main() {
   uint allowed = allowedParts(unpackHalf2x16(fragment.albedoBCoverage).y);
 
   for (int axis = 0; axis < 3; ++axis) {
-    // The fragment covers one column of its grid along the dominant axis. Projected along another axis, its height is the slope of the
-    // surface.
+    // The fragment covers one column of its grid along the dominant axis. Projected along another axis,
+    // its height is the slope of the surface.
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     vec2 size = vec2(listVoxel / cellSize);
     if (u == dominant) size.x *= normal[axis] / normal[dominant];

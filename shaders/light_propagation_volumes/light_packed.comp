@@ -1,8 +1,8 @@
 #version 450
 // Illuminated voxels become virtual point lights as printed (thesis 004 Listings 4.30 and 4.31): each voxel is lit at its centre, by each
 // light on the normal closest to the light's direction, and emits as a clamped cosine around that normal. The light of all lights is
-// summed. A printed coefficient is one of radiance: times the area of a cell's face, it is the intensity of a surface that fills the face,
-// W/sr.
+// summed. A printed coefficient is one of radiance: times the area of a cell's face, it is the
+// intensity of a surface that fills the face, W/sr.
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
 #include "common/spherical_harmonics.glsl"

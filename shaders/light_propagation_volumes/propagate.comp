@@ -16,8 +16,8 @@ bool lit(ivec3 brick) {
   return texelFetch(stamps, brick, 0).r == uint(stamp);
 }
 
-// Sum of crossFace() over the six neighbours, by sums and differences of the two neighbours along each axis, so that each constant is used
-// once.
+// Sum of crossFace() over the six neighbours, by sums and differences of the two neighbours along each
+// axis, so that each constant is used once.
 vec4 fromNeighbours(sampler3D light, ivec3 cell, ivec3 below, ivec3 above, vec3 openBelow, vec3 openAbove, vec3 turnBelow, vec3 turnAbove) {
   vec4 xBelow = openBelow.x * texelFetch(light, ivec3(below.x, cell.yz), 0);
   vec4 xAbove = openAbove.x * texelFetch(light, ivec3(above.x, cell.yz), 0);

@@ -14,8 +14,8 @@ uint levelSize(uint texels, uint level) {
 }
 
 // The order of a map's texels. Layers are square and cut into strips of `rows` rows, which are traversed column by column. At each
-// position, the layers of `together` views with the same direction follow each other. With rows = 1 and together = 1, it is the order of
-// the texture.
+// position, the layers of `together` views with the same direction follow each other. With rows = 1 and
+// together = 1, it is the order of the texture.
 struct TexelOrder {
   uint width;     // texels along a side of a layer
   uint rows;      // of a strip

@@ -41,8 +41,8 @@ vec3 arriving(ivec2 pixel, vec3 posWorld) {
   vec3 normal = texelFetch(gNormal, pixel, 0).xyz, sum = vec3(0.0);
   vec4 random = randomOf(pixel);
   for (int i = 0; i < samples; ++i) {
-    // Directions uniform over the hemisphere, one in each stratum of the cosine. The cosines of two neighbouring strata have the mean of
-    // both.
+    // Directions uniform over the hemisphere, one in each stratum of the cosine. The cosines of two
+    // neighbouring strata have the mean of both.
     float cosTheta = (float(i) + ((i & 1) == 0 ? random.x : 1.0 - random.x)) / float(samples);
     vec2 place = evenly(i, random.yz);
     ivec2 other;

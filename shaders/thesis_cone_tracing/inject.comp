@@ -4,8 +4,8 @@
 // depends on the order of the fragments, and so does every image computed from it. Deviates: stores radiance, albedo / pi times irradiance,
 // in units of the radiance of the largest byte, and clamped to it; the listing stores colours, and brighter colours wrap.
 //
-// GRIDS six: the same average in each of six grids, one after another. The thesis does not print how the faces of the finest voxels are
-// filled.
+// GRIDS six: the same average in each of six grids, one after another. The thesis does not print how
+// the faces of the finest voxels are filled.
 #pragma lumivox axis GRIDS one six
 #pragma lumivox axis LIGHTS 0 1
 

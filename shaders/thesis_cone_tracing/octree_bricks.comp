@@ -1,8 +1,8 @@
 #version 450
 // Writes the bricks of the leaves from the sums: radiance pre-multiplied by opacity, and opacity.
 // If voxels lie in leaves (octreeAtCorners 0), each vertex is the mean of the voxels of its own leaf around it (Sec. 4.2.2, Fig. 69:
-// averages are stored in the corners of the brick, Listing 4.23, and spread through it). octree_transfer.comp then averages it with the
-// neighbours.
+// averages are stored in the corners of the brick, Listing 4.23, and spread through it).
+// octree_transfer.comp then averages it with the neighbours.
 // If voxels lie at corners (1), each brick gets its own eight voxels; those that it shares with the higher neighbour are copied from there.
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"

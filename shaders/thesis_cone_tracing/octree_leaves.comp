@@ -22,8 +22,8 @@ void main() {
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   vec3 value = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
   if (what == kLight) value = value / kPi * ambient;
-  // Listings 4.9 and 4.23 average packed normals without their coverage. Coverage would pull the packed values to 0, a normal of (-1, -1,
-  // -1).
+  // Listings 4.9 and 4.23 average packed normals without their coverage. Coverage would pull the packed
+  // values to 0, a normal of (-1, -1, -1).
   if (what == kNormal) value = clamp(0.5 + 0.5 * unpackNormal(fragment.normal), 0.0, 1.0);
   float coverage = what == kNormal ? 1.0 : clamp(blueCoverage.y, 0.0, 1.0);
   uint place = sumsOf(brick, uint(own.x | own.y << 1 | own.z << 2));

@@ -1,6 +1,6 @@
 // One bit for each possible node of an octree over a grid: depth d, with the root at depth 0, has 8^d bits along a Morton curve, and the
-// depths follow each other. RankedTags add the number of bits set before them, so that a node finds its place in a list of nodes in one
-// read.
+// depths follow each other. RankedTags add the number of bits set before them, so that a node finds its
+// place in a list of nodes in one read.
 // C++ side: framework/include/lumivox/toolkit/bit_tree.h.
 #ifndef LUMIVOX_BIT_TREE
 #define LUMIVOX_BIT_TREE

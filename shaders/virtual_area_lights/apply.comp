@@ -1,6 +1,6 @@
 #version 450
 // Sec. 3.2 steps 3 and 4: reflects the averaged light of the points nearest to a pixel, or (AT vertices) the light interpolated by
-// rasterization, by the pixel's own normal and material (Eq. 10).
+// rasterisation, by the pixel's own normal and material (Eq. 10).
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis INTERPOLATE averaged plain

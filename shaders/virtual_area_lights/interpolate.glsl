@@ -8,8 +8,8 @@
 const int kMostNeighbours = 32;  // limit of the pass 'points'
 layout(constant_id = 0) const int neighbours = 8;
 
-// The nearest points, by increasing distance. All indices are known when the program is linked, so that loops unroll and the arrays stay in
-// registers.
+// The nearest points, by increasing distance. All indices are known when the program is linked, so that
+// loops unroll and the arrays stay in registers.
 struct Nearest {
   uint points[kMostNeighbours];
   float distancesSquared[kMostNeighbours];

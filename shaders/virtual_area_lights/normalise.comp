@@ -1,7 +1,7 @@
 #version 450
 // Sec. 3.2 step 2 (Eq. 11): scales the averaged light so that at the point the local model (Eq. 10) gives the reflected light of all
-// lights. The division is unbounded. Without PUBLISHED there are two limits: `amplification` times the light, and the radiance of the
-// brightest light.
+// lights. The division is unbounded. Without PUBLISHED there are two limits: `amplification` times the
+// light, and the radiance of the brightest light.
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox axis PUBLISHED 0 1
 layout(local_size_x = 64) in;

@@ -1,6 +1,5 @@
-// Points distributed over the surfaces, and the look-up grid that finds the nearest points. C++ side: port SurfacePoints;
-// SurfacePointsBinding in
-// framework/include/lumivox/toolkit/bindings.h.
+// Points distributed over the surfaces, and the look-up grid that finds the nearest points. C++ side:
+// port SurfacePoints; SurfacePointsBinding in framework/include/lumivox/toolkit/bindings.h.
 #ifndef LUMIVOX_SURFACE_POINTS
 #define LUMIVOX_SURFACE_POINTS
 

@@ -50,8 +50,8 @@ vec3 depthToLight(int i, vec3 posWorld) {
   float reach;
   wayToLight(lights[i], posWorld, direction, reach);
 #if LIGHT_DEPTH == LIGHT_DEPTH_VOLUME
-  // The grid is too coarse for the surface of thick smoke: the near part of the path is integrated, and the transmittance of the rest is
-  // read.
+  // The grid is too coarse for the surface of thick smoke: the near part of the path is integrated, and
+  // the transmittance of the rest is read.
   vec3 depth = evenDepth(posWorld, direction, reach);
   float way = min(nearReach, reach), reached;
   for (int m = 0; m < mediumCount; ++m) {
@@ -89,8 +89,8 @@ float placeInStep(LightSample light, vec3 direction, float near, float stride, f
   return place;
 }
 
-// Integral of exp(-depth) over a step of unit length along which the depth changes linearly from a to b: exact, so that a step may have any
-// optical depth.
+// Integral of exp(-depth) over a step of unit length along which the depth changes linearly from a to
+// b: exact, so that a step may have any optical depth.
 vec3 meanTransmittance(vec3 a, vec3 b) {
   vec3 change = b - a;
   vec3 exact = (exp(-a) - exp(-b)) / mix(change, vec3(1.0), lessThan(abs(change), vec3(1e-2)));

@@ -42,8 +42,8 @@ float amountAt(vec3 posWorld) {
   return clamp(amount, 0.0, 1.0);
 }
 
-// Listing 4.53. The printed cosine of vectors without unit length can make the base negative; the power is then undefined, and nothing is
-// added.
+// Listing 4.53. The printed cosine of vectors without unit length can make the base negative; the power
+// is then undefined, and nothing is added.
 float scattering(float cosine, float g) {
   float base = 1.0 + g * g - 2.0 * g * cosine;
   if (base <= 0.0) return 0.0;

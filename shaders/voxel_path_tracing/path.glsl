@@ -1,6 +1,6 @@
 // Light paths through binary voxels: Thiedemann, Henrich, Grosch & Mueller 2011; thesis Gomes 2015, Sec. 3.2.4. The bits give the hit point
-// of a ray. Reflective shadow maps give the direct light and the material there; in shadow, the averaged attributes of the voxels give the
-// material.
+// of a ray. Reflective shadow maps give the direct light and the material there; in shadow, the
+// averaged attributes of the voxels give the material.
 #pragma lumivox axis MAP 0 1
 #pragma lumivox axis GLOSSY 0 1      // surfaces have a Phong lobe
 #pragma lumivox axis ATTRIBUTES 0 1  // paths go on from surfaces in shadow
@@ -63,8 +63,8 @@ struct Choice {
 
 vec3 reflectedBy(Surface surface, Choice choice) { return surface.diffuse * choice.diffuse + surface.specular.rgb * choice.glossy; }
 
-// Probability of sampling the Phong lobe. It is at most 0.75, which limits the diffuse weight to 4, because filters may blend it among
-// pixels.
+// Probability of sampling the Phong lobe. It is at most 0.75, which limits the diffuse weight to 4,
+// because filters may blend it among pixels.
 float shareOfLobe(Surface surface) {
   const vec3 kOne = vec3(1.0);
   float diffuse = dot(surface.diffuse, kOne), glossy = dot(surface.specular.rgb, kOne);
@@ -85,8 +85,8 @@ uvec4 noiseOf(ivec2 at, int fromSurface, int use) {
 }
 
 // Samples a direction from both lobes, weighted by the density of their mixture (Veach 1997, Sec. 9.2.4). The first direction follows R2,
-// as do the rays of a single bounce. Further directions are independent: otherwise paths would only have pairs of directions from the
-// sequence.
+// as do the rays of a single bounce. Further directions are independent: otherwise paths would only
+// have pairs of directions from the sequence.
 Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   uvec4 noise = noiseOf(at, fromSurface, 0);
   if (fromSurface == 0) {

@@ -19,7 +19,7 @@ layout(location = 6) flat out int dominantAxis;
 layout(location = 7) flat out vec2 cornerTexcoords[3];
 #endif
 
-// In pixels. The fragment shader tests each voxel exactly, so rasterization must only miss none. It snaps corners to 1/256 pixel or finer.
+// In pixels. The fragment shader tests each voxel exactly, so rasterisation must only miss none. It snaps corners to 1/256 pixel or finer.
 const float kEnlarged = 0.5 + 1.0 / 64.0;
 
 // Corner `k` of the triangle enlarged by half a pixel (Hasselgren et al. 2005, Sec. 42.2): the crossing of its two shifted edges.

@@ -1,5 +1,5 @@
 #version 450
-// Conservative voxelization in the manner of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without rasterization.
+// Conservative voxelization in the manner of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without rasterisation.
 // LARGE 0: one thread per triangle. It first tests all voxels of the triangle's bounding box and records the results as bits, then writes
 // the fragments, so that threads in lockstep do not diverge. A triangle with more voxels than bits is put aside, as rows of tiles.
 // LARGE 1: one work group per row of tiles of 8 x 8 columns, one thread per column, so that no large triangle occupies a single thread

@@ -1,5 +1,5 @@
 #version 450
-// Values at vertices, interpolated by rasterization, on the visible side. w 1: the pixel has a value.
+// Values at vertices, interpolated by rasterisation, on the visible side. w 1: the pixel has a value.
 #pragma lumivox axis MASKS 0 1
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"

@@ -1,5 +1,5 @@
 #version 450
-// Sec. 3.2 step 4 as published: the averaged light of vertices, interpolated by rasterization, on the visible side.
+// Sec. 3.2 step 4 as published: the averaged light of vertices, interpolated by rasterisation, on the visible side.
 #pragma lumivox axis MASKS 0 1
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"

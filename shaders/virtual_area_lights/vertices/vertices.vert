@@ -1,5 +1,5 @@
 #version 450
-// Sec. 3.2 step 4 as published: passes the averaged lights of vertices (interpolate_vertices.comp) to rasterization.
+// Sec. 3.2 step 4 as published: passes the averaged lights of vertices (interpolate_vertices.comp) to rasterisation.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"

@@ -5,8 +5,8 @@
 // all others keep their addresses.
 //
 // All voxels lie in one volume per face. Each block has a border with copies of the voxels of its opposite side, so that it can be
-// filtered. Voxels of a level that also lie in the finer level are stored twice: as voxelized ("own"), and as filtered from the finer level
-// ("inner").
+// filtered. Voxels of a level that also lie in the finer level are stored twice: as voxelized ("own"),
+// and as filtered from the finer level ("inner").
 // C++ side: RadianceClipmap in techniques/voxel_cone_tracing/clipmap/radiance_clipmap.h.
 const int kMostLevels = 20;
 

@@ -53,8 +53,8 @@ bool differsAsVoxelized(int of, ivec4 first, Had before, ivec3 voxel) {
 #endif
   return differs;
 }
-// Whether the value that is read of a child differs from the last frame. Without branches, because most conditions are equal for all
-// children.
+// Whether the value that is read of a child differs from the last frame. Without branches, because most
+// conditions are equal for all children.
 bool differsAsRead(int finer, LevelBlocks blocks, ivec3 voxel, bool isAnew) {
   bool wasOwn = isIn(finerHad.ownFirst, finerHad.ownEnd, voxel), wasInner = isIn(finerHad.innerFirst, finerHad.innerEnd, voxel);
   bool inner = isIn(blocks.innerFirst, blocks.innerEnd, voxel);

@@ -1,7 +1,7 @@
 #version 450
 // Finds the cells of a clipmap's levels whose voxels may differ from the last frame: a moving object has left or entered the cell, or the
-// light of the cell changes. A cell found needlessly only costs being filled again, so the test is conservative. Lists the occupied changed
-// cells.
+// light of the cell changes. A cell found needlessly only costs being filled again, so the test is
+// conservative. Lists the occupied changed cells.
 #pragma lumivox axis LIGHTS 0 1
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

@@ -4,7 +4,7 @@
 // that only moved has boxes for the newly reached voxels.
 //
 // SAMPLED 0: one fragment per voxel that a triangle touches.
-// SAMPLED 1: eight samples in each column along the dominant axis, as in Sec. 3.5.2, which uses multisampled rasterization. The covered
+// SAMPLED 1: eight samples in each column along the dominant axis, as in Sec. 3.5.2, which uses multisampled rasterisation. The covered
 // samples of a voxel give its opacity along each axis (covered_samples.glsl). Emittance uses the covered share of the voxel's side, with
 // more samples for small triangles, so that the light of a moving object does not jump (Fig. 56).
 // CHANGED: in some boxes, only the voxels in changed cells are filled.

@@ -1,7 +1,7 @@
 // A sparse voxel octree: Crassin et al. 2011, Sec. 4; thesis 004, Sec. 3.1.1. Depth 0 is the root, `octreeDepth` the depth of the leaves.
 // One bit per possible node tells whether the node exists (octree_tags.glsl); the node's brick is the number of nodes before it
-// (octree_ranks.glsl). The brick of node n of a depth has the voxels 2n and 2n + 1 of that depth along each axis, so that each voxel is
-// stored once.
+// (octree_ranks.glsl). The brick of node n of a depth has the voxels 2n and 2n + 1 of that depth along
+// each axis, so that each voxel is stored once.
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/octree/radiance_octree.h.
 #ifndef LUMIVOX_OCTREE
 #define LUMIVOX_OCTREE

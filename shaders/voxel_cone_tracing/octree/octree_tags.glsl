@@ -1,5 +1,5 @@
-// Tags are one bit per possible node (toolkit/bit_tree.glsl), set if the node exists: so all nodes are counted and allocated before any is
-// written.
+// Tags are one bit per possible node (toolkit/bit_tree.glsl), set if the node exists: so all nodes are
+// counted and allocated before any is written.
 #ifndef LUMIVOX_OCTREE_TAGS
 #define LUMIVOX_OCTREE_TAGS
 #include "toolkit/bit_tree.glsl"

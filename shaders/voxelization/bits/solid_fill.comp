@@ -1,6 +1,6 @@
 #version 450
-// Carries the parity of one object along its columns and adds the voxels inside to the solid voxels. The parity is reset to zero for the
-// next object.
+// Carries the parity of one object along its columns and adds the voxels inside to the solid voxels.
+// The parity is reset to zero for the next object.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {

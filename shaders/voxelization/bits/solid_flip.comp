@@ -1,9 +1,9 @@
 #version 450
 // Parity fill: each triangle of a closed surface flips every voxel of a column behind it, so that the voxels inside are flipped an odd
 // number of times. This pass flips only the first of these voxels; solid_fill.comp carries the parity to the end of the column.
-// Deviates from rasterizing the triangles: a column's centre line meets a triangle if a ray in the projection crosses an odd number of its
+// Deviates from rasterising the triangles: a column's centre line meets a triangle if a ray in the projection crosses an odd number of its
 // edges. An edge gives the same answer for both of its triangles, whatever the rounding, so every line meets a closed surface an even
-// number of times and no column leaks. The coverage rules of rasterization guarantee this only without clipping. A triangle over many
+// number of times and no column leaks. The coverage rules of rasterisation guarantee this only without clipping. A triangle over many
 // columns is put aside and spread over many threads (MANY 1).
 #pragma lumivox axis MANY 0 1
 #define SCENE_GEOMETRY
