@@ -27,7 +27,7 @@ vec3 surfaceLightIrradiance(SurfaceLight light, vec3 posWorld, vec3 normal) {
   return light.flux.rgb * sharePerArea(light, posWorld, normal);
 }
 
-// Weight by which texels are chosen at random.
+// Weight by which texels are chosen.
 float luminance(vec3 value) { return dot(value, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
 
 #endif

@@ -1,8 +1,8 @@
-// A clipmap: levels around the camera with equal size in voxels, each twice as coarse as the previous level. Above the coarsest of them are
-// levels made by halving it (thesis 004, Sec. 3.5.1, Fig. 50 and 51). The coordinates of a level's voxels are integers that count from
-// clipmapOrigin and do not depend on the camera. A voxel's address is the remainder of its coordinates by the level's period, frac(world /
-// size) in voxels (toroidal addressing, Fig. 52 and 53). When a level moves, the voxels that it newly reaches replace those that it leaves;
-// all others keep their addresses.
+// A clipmap: levels around the camera with equal size in voxels, each twice as coarse as the previous level. Above the coarsest of them
+// are levels made by halving it (thesis 004, Sec. 3.5.1, Fig. 50 and 51). The coordinates of a level's voxels are integers that count from
+// clipmapOrigin and do not depend on the camera. A voxel's address is the remainder of its coordinates by the level's period: in voxels,
+// frac(world / size) (toroidal addressing, Fig. 52 and 53). When a level moves, the voxels that it newly reaches replace those that it
+// leaves; all others keep their addresses.
 //
 // All voxels lie in one volume per face. Each block has a border with copies of the voxels of its opposite side, so that it can be
 // filtered. Voxels of a level that also lie in the finer level are stored twice: as voxelized ("own"),

@@ -1,6 +1,6 @@
 #version 450
-// Direct light at the visible surfaces, with a cone to each light instead of a shadow map: Crassin et al. 2011; thesis 004 Sec. 2.4, Fig.
-// 15.
+// Direct light at the visible surfaces, with a cone to each light instead of a shadow map: Crassin et al. 2011; thesis 004
+// Sec. 2.4, Fig. 15.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis EMISSION 0 1
