@@ -1,4 +1,4 @@
-// Radiance of the surface at a point that a ray met, as the reflective shadow maps know it: thesis 004, Sec. 3.2.3 and Listing 4.49.
+// Radiance of the surface at the hit point of a ray, read from the reflective shadow maps: thesis 004, Sec. 3.2.3 and Listing 4.49.
 #include "common/lights.glsl"
 
 layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
@@ -6,17 +6,18 @@ layout(binding = 3) uniform sampler2DArray rsmPosition;
 layout(binding = 4) uniform sampler2DArray rsmNormal;
 layout(binding = 5) uniform sampler2DArray rsmFlux;
 
-layout(constant_id = 0) const int taps = 1;       // 4: the four texels around the point, bilinearly
-layout(constant_id = 1) const int frontTest = 1;  // whether surfaces that look away from the receiver bring nothing
-// 1: the tests of Listing 4.49 as printed. The tolerance enlarges the texel's side alone, whose slant is that to the direction of a sun or a
-// spot and counts only with frontTest; the receiver is where it is, an offset off where its rays begin.
+layout(constant_id = 0) const int taps = 1;       // 1: the texel at the point; 4: bilinear over four texels
+layout(constant_id = 1) const int frontTest = 1;  // whether surfaces that face away from the receiver contribute nothing
+// 1: the tests of Listing 4.49 as printed. The tolerance enlarges only the side of the texel. The slant of the texel is measured against
+// the direction of a sun or spot light, and counts only with frontTest. The receiver is its surface
+// point, an offset away from its ray origins.
 layout(constant_id = 6) const int printedTests = 0;
 
 layout(std140, binding = 2) uniform BackProjection {
   float voxelDiagonal;  // m
   float tolerance;      // factor on the distance of a surface from the point; below 0: no test
-  float cap;            // most of that distance, m; below 0: none
-  float leastCosine;    // between a surface and the light
+  float cap;            // largest allowed distance, m; below 0: unlimited
+  float leastCosine;    // lower limit of the cosine between a surface's normal and its light
   int firstLight;       // light samples that this dispatch adds
   int lightsAtOnce;
 };
@@ -41,14 +42,14 @@ bool showsPoint(LightSample light, ivec3 texel, float depth, vec3 point, vec3 to
   return true;
 }
 
-// What the diffuse surface of a texel shines, W/(sr m^2): exitance, the flux of the texel over its area, goes to all sides alike.
+// Radiance of the diffuse surface of a texel, W/(sr m^2), the same in all directions: its exitance, flux over area, divided by pi.
 vec3 diffuseOfTexel(ivec3 texel) { return texelFetch(rsmFlux, texel, 0).rgb / (kPi * texelFetch(rsmNormal, texel, 0).w); }
 
 vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, vec3 toReceiver) {
   return showsPoint(light, texel, depth, point, toReceiver) ? diffuseOfTexel(texel) : vec3(0.0);
 }
 
-// Where a point lies in the view of a light: its layer, and its place in texels; false outside of the view. `depth`: along the view.
+// Layer and position, in texels, of a point in the view of a light; false outside the view. `depth`: along the view direction, m.
 bool placeInView(LightSample light, vec3 point, out int layer, out vec2 place, out float depth) {
   layer = light.firstView;
   if (light.firstView < 0) return false;
@@ -62,10 +63,10 @@ bool placeInView(LightSample light, vec3 point, out int layer, out vec2 place, o
   return all(greaterThanEqual(place, vec2(0.0))) && all(lessThanEqual(place, size));
 }
 
-// The texel at a place. The last one of a face holds its far edge too.
+// The texel at a place. The last texel of a face includes the far edge of the face.
 ivec3 texelAt(vec2 place, int layer) { return ivec3(min(ivec2(place), textureSize(rsmPosition, 0).xy - 1), layer); }
 
-// Of one light, of any kind.
+// Radiance of the surface at a point due to one light, of any kind.
 vec3 backProjected(LightSample light, vec3 point, vec3 toReceiver) {
   int layer;
   vec2 place;

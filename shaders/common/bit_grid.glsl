@@ -1,12 +1,12 @@
-// Straight rays through one bit a voxel, in stacks of 128 along z with levels that halve x and y (BinaryGrid): Thiedemann, Henrich, Grosch &
-// Mueller 2011, Sec. 4; thesis 004, Sec. 3.2.2 and 4.4.6. Which voxel is the first is decided by the rule of lumivox/measure/voxel_walk.h,
-// to the bit, whichever way it is found:
-//   BIT_RULE hierarchy: a texel of a level is a block of columns; the part of the ray in it is a run of bits along z, ANDed with the stack.
-//     Empty: on to where the ray leaves the block, and, where that leaves the block of the next level too, one level up; else one level down,
-//     and in a single column the first common bit.
-//   BIT_RULE stacks: the same at level 0 alone.
+// Straight rays through a grid of one bit per voxel, in stacks of 128 bits along z with mip levels that halve x and y (BinaryGrid):
+// Thiedemann, Henrich, Grosch & Mueller 2011, Sec. 4; thesis 004, Sec. 3.2.2 and 4.4.6. All rules but `printed` find the same first voxel,
+// to the bit, by the definition in lumivox/measure/voxel_walk.h:
+//   BIT_RULE hierarchy: a texel of a level is a block of columns. The part of the ray inside the block is a run of bits along z, ANDed with
+//     the stack. If no bit is common, the ray goes on to its exit from the block, and one level up if it also leaves the block of the next
+//     level. Otherwise it goes one level down; in a single column the first common bit is the hit.
+//   BIT_RULE stacks: the same at level 0 only.
 //   BIT_RULE plain: one voxel after another (Amanatides & Woo 1987).
-//   BIT_RULE printed: thesis 004, Listings 4.39, 4.40 and 4.47, for what they find: see there.
+//   BIT_RULE printed: thesis 004, Listings 4.39, 4.40 and 4.47 as printed, whatever voxel they find.
 // No position is computed from t: columns and cells are integers, and only crossings of planes are compared. Lengths are in voxels from the
 // corner of voxel (0, 0, 0).
 #pragma lumivox axis BIT_RULE hierarchy stacks plain printed
@@ -17,7 +17,7 @@ layout(binding = 8) uniform usampler2DArray bitStacks;
 
 struct BitHit {
   ivec3 voxel;
-  float t;      // where the ray enters it; 0 where it begins in it
+  float t;      // where the ray enters the voxel; 0 if the ray begins in it
   bool found;
   int fetches;  // texels of the stacks that were read
 };
@@ -27,7 +27,7 @@ const int kStackBits = 128;
 
 // The ray that is followed.
 vec3 bitOrigin, bitDirection, bitInverse;
-ivec3 bitStart;    // the voxel of the origin; -1 or the size of the grid outside
+ivec3 bitStart;    // the voxel of the origin; -1 or the size of the grid if the origin lies outside
 ivec3 bitVoxels;   // of the grid
 bvec3 bitMoves;
 
@@ -40,7 +40,7 @@ int cellBehind(int axis, float t, int crossedAxis) {
   if (!bitMoves[axis]) return bitStart[axis];
   bool rises = bitDirection[axis] > 0.0;
   int last = rises ? bitVoxels[axis] : -1, step = rises ? 1 : -1;
-  int leaving = rises ? 1 : 0, entering = 1 - leaving;  // planes of a cell, by which it is left and entered
+  int leaving = rises ? 1 : 0, entering = 1 - leaving;  // offsets of the planes through which the ray leaves and enters a cell
   int cell = int(clamp(floor(bitOrigin[axis] + t * bitDirection[axis]), -1.0, float(bitVoxels[axis])));
   cell = rises ? max(cell, bitStart[axis]) : min(cell, bitStart[axis]);
   while (cell != last && isBefore(crossingAt(axis, cell + leaving), axis, t, crossedAxis)) cell += step;
@@ -50,7 +50,7 @@ int cellBehind(int axis, float t, int crossedAxis) {
 
 bool isInGrid(ivec3 voxel) { return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, bitVoxels)); }
 
-// The t at which the ray leaves a voxel, or the grid; kNever without motion.
+// The t at which the ray leaves a voxel; kNever for a direction of length 0. leavesGrid(): the same for the grid.
 float leavesVoxel(ivec3 voxel) {
   float t = kNever;
   for (int axis = 0; axis < 3; ++axis)
@@ -64,7 +64,7 @@ float leavesGrid() {
   return t;
 }
 
-// The voxel in which a ray begins in the grid, and t there; false where it misses it.
+// The first voxel of the grid that a ray enters, and the t of entry; false if the ray misses the grid.
 bool enterBits(vec3 origin, vec3 direction, ivec3 voxels, out ivec3 voxel, out float t) {
   bitOrigin = origin;
   bitDirection = direction;
@@ -91,7 +91,7 @@ bool enterBits(vec3 origin, vec3 direction, ivec3 voxels, out ivec3 voxel, out f
   return isInGrid(voxel);
 }
 
-// The first bit that is set of a texel, upwards or downwards; -1: none.
+// The first set bit of a texel, upwards or downwards; -1: none.
 int firstOfStack(uvec4 stack, bool upwards) {
   if (upwards) {
     int word = stack.x != 0u ? 0 : stack.y != 0u ? 1 : stack.z != 0u ? 2 : 3;
@@ -101,14 +101,14 @@ int firstOfStack(uvec4 stack, bool upwards) {
   return stack[word] != 0u ? 32 * word + findMSB(stack[word]) : -1;
 }
 
-// The bits from one to another of a texel, both included.
+// A texel in which the bits from `low` to `high`, both included, are set.
 uvec4 runOfBits(int low, int high) {
   ivec4 first = ivec4(low) - ivec4(0, 32, 64, 96), last = ivec4(high) - ivec4(0, 32, 64, 96);
   uvec4 from = mix(uvec4(0xffffffffu) << uvec4(clamp(first, 0, 31)), uvec4(0u), greaterThan(first, ivec4(31)));
   return mix(from & (uvec4(0xffffffffu) >> uvec4(31 - clamp(last, 0, 31))), uvec4(0u), lessThan(last, ivec4(0)));
 }
 
-// The first set bit of a stack of a level on the way from one cell to another along z, both included; -1: none.
+// The first set bit of a stack of a level, going along z from one cell to another, both included; -1: none.
 int firstOfRun(ivec2 texel, int level, int from, int to, inout int fetches) {
   bool upwards = to >= from;
   int low = min(from, to), high = max(from, to), step = upwards ? 1 : -1;
@@ -151,16 +151,15 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
 #elif BIT_RULE == BIT_RULE_PRINTED
 // C++ side: RayMethod::binding() in framework/src/toolkit/voxel_rays.cpp.
 layout(std140, binding = 7) uniform Printed {
-  int printedSteps;     // most that a ray makes; one that has made them counts as free, as printed
-  float printedOffset;  // behind each exit, voxels
+  int printedSteps;     // step limit of a ray; a ray that reaches it counts as unoccluded, as printed
+  float printedOffset;  // distance past each exit at which the ray goes on, voxels
 };
-// Listing 4.40: texel (i, j) holds the bits from i to j, the XOR of the prefix masks i and j + 1 of Listing 4.39. Mask 128 does not exist:
-// a guarded read returns 0 there, which is used.
+// Listing 4.40: texel (i, j) holds the bits from i to j, the XOR of the prefix masks i and j + 1 of Listing 4.39. Prefix mask 128 does not
+// exist; it counts as 0, as a guarded out-of-bounds read returns.
 layout(binding = 9) uniform usampler2D rayMasks;
 
-// Listing 4.47. A ray is a part of a straight line, from 0 to 1 in its own units, in a cube whose side is a power of two of voxels along x
-// and y and one stack along z. As printed the level grows without a bound: here the coarsest one is read again. Where it reads outside of
-// the texture, nothing is set.
+// Listing 4.47. A ray is a line segment with the parameter 0 to 1, in a grid of 2^k voxels along x and along y and one stack along z.
+// Deviates: as printed the level grows without a bound; here the coarsest level is read again. Reads outside the texture find no set bit.
 BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
   BitHit hit = BitHit(ivec3(-1), kNever, false, 0);
   bitOrigin = origin, bitDirection = direction, bitInverse = 1.0 / direction, bitVoxels = voxels;
@@ -187,7 +186,7 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
       ++hit.fetches;
     }
     if (met != uvec4(0u)) {
-      // Which bit it is: by the sign of the direction, and by whole numbers in place of the logarithms of Listing 4.48.
+      // The sign of the direction decides which bit is the first. Integer operations replace the logarithms of Listing 4.48.
       if (level == 0) return BitHit(ivec3(texel, firstOfStack(met, direction.z >= 0.0)), near * segment, true, hit.fetches);
       --level;
     } else {
@@ -209,7 +208,7 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
 #else
   const int coarsest = 0;
 #endif
-  const int kFirst = 3;  // as published: what surrounds a surface is hardly ever empty
+  const int kFirst = 3;  // as published: the block around a surface is hardly ever empty at coarser levels
   int level = min(kFirst, coarsest);
   while (t <= reach) {
     ivec2 size = max(voxels.xy >> level, 1), texel = min(voxel.xy >> level, size - 1);

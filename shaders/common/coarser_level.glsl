@@ -1,22 +1,22 @@
-// One voxel of a level from those of the next finer one (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping). An including file
-// says before what a finer voxel holds, radiance pre-multiplied by the opacity in a:
+// One voxel of a mip level from those of the next finer level (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping). An including
+// file first defines how to read a finer voxel, radiance pre-multiplied by the opacity in a:
 //   vec4 finerVoxel(ivec3 at)
 //
-// Along each of the three axes the children are composited front to back in each column, both ways, and the columns are averaged: what
-// looking through the coarse voxel along that axis would see. Its opacity is the largest of the three, that of the axis which a surface
-// faces. So
-// - a uniform medium of opacity a per voxel gets 1 - (1-a)^2: its transmittance does not depend on the level that a cone reads;
-// - a sheet one voxel thick of opacity a keeps a at every level, while the plain mean of the thesis halves it at every level and lets
-//   light escape. So does, more slowly, any mean over the axes: along the sheet only half of the columns meet it.
-// Radiance over opacity is a mean of what is blended, over the axes weighted by the square of their opacities. `average` is the
-// published mean of the eight children, over all that a coarse voxel shares in.
+// Along each of the three axes, the children of each column are composited front to back, in both directions, and the columns are averaged:
+// this is the view through the coarse voxel along that axis. The opacity is the largest of the three,
+// that of the axis which a surface faces:
+// - A uniform medium of opacity a per voxel gets 1 - (1-a)^2: its transmittance does not depend on the level that a cone reads.
+// - A sheet one voxel thick of opacity a keeps a at every level. The plain mean of the thesis halves its opacity at every level and leaks
+//   light. Any mean over the axes leaks too, more slowly: along the sheet only half of the columns meet it.
+// Radiance over opacity is the mean of the three views, weighted by the square of their opacities. `average` is the published mean of the
+// eight children, or of all children that a coarse voxel overlaps.
 #ifndef LUMIVOX_COARSER_LEVEL
 #define LUMIVOX_COARSER_LEVEL
 #include "common/coarser_voxel.glsl"
 
 const int kFacing = 0, kAverage = 1;
 
-// Mean over the columns along one axis, and over both ways along it.
+// Mean over the columns along one axis, and over both directions along it.
 vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
   int side = (axis + 1) % 3, up = (axis + 2) % 3;
   vec4 sum = vec4(0.0);

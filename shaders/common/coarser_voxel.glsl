@@ -3,8 +3,8 @@
 #define LUMIVOX_COARSER_VOXEL
 #include "common/cones.glsl"
 
-// Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
-// them; with an odd number a coarse voxel is a little wider than two, and shares children with its neighbours.
+// Fraction of child `child` that lies in coarse voxel `cell` along one axis. With an even number of children it is 1 for two of them. With
+// an odd number a coarse voxel is a little wider than two children and shares some with its neighbours.
 float share(int cell, int child, float childrenPerCell) {
   float low = float(cell) * childrenPerCell, high = low + childrenPerCell;
   return clamp(min(high, float(child + 1)) - max(low, float(child)), 0.0, 1.0);
@@ -17,10 +17,10 @@ vec4 slab(vec4 value, float length) {
   return vec4(value.rgb * (opacity / value.a), opacity);
 }
 
-// The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
+// The usual case, two whole children along each axis, without loops. The sum of the views of one column from both of its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
 
-// One value from those of the three axes.
+// Combines the values of the three axes: the largest opacity; radiance over opacity weighted by the squares of the opacities.
 vec4 facing(vec4 x, vec4 y, vec4 z) {
   float largest = max(x.a, max(y.a, z.a));
   if (largest <= 0.0) return vec4(0.0);
@@ -30,7 +30,7 @@ vec4 facing(vec4 x, vec4 y, vec4 z) {
   return vec4(sum.rgb * (largest / sum.a), largest);
 }
 
-// Of eight whole children, x first, the opacity of the axis that is most closed.
+// The coarse voxel of eight whole children, in the order x, y, z with x fastest. Its opacity is that of the most opaque axis.
 vec4 seenThrough(vec4 child[8]) {
   float most = 0.0;
   for (int i = 0; i < 8; ++i) most = max(most, child[i].a);

@@ -1,14 +1,14 @@
-// The fragment of a triangle in the voxels of a column; the same to the bit for every voxelizer that works by columns.
+// The fragment of a triangle in the voxels of a column, equal to the bit in every voxelizer that works by columns.
 #ifndef LUMIVOX_COLUMN_SAMPLE
 #define LUMIVOX_COLUMN_SAMPLE
 #include "common/textures.glsl"
 #include "common/triangle.glsl"
 
-// If the triangle does not cover a column's centre, the distance of the sample inside the edge, in voxels. On the edge itself, where the
-// next surface begins, rounding would decide whether light reaches it.
+// Distance of the sample inside the triangle's edge, in voxels, if the triangle does not cover the column's centre. On the edge itself,
+// where the next surface begins, rounding would decide whether light reaches the sample.
 const float kInset = 1.0 / 64.0;
 
-// Barycentric coordinates in the projection of the point of the triangle nearest to a point, or just inside of it.
+// Barycentric coordinates, in the projection along z, of the triangle's point nearest to a point; on an edge, moved inside by kInset.
 vec3 barycentric(mat3 corners, vec2 point) {
   vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy, p = point - corners[0].xy;
   const vec3 kMiddle = vec3(1.0 / 3.0);
@@ -23,7 +23,7 @@ vec3 barycentric(mat3 corners, vec2 point) {
   return mix(result, kMiddle, toMiddle > kInset ? kInset / toMiddle : 1.0);
 }
 
-// The sample of the triangle in a column: the fragment of every voxel there, but for its place.
+// The sample of the triangle in a column: the fragment that all voxels of the column share, without its position.
 struct ColumnSample {
   mat3 corners;  // of the triangle
   vec3 centre;   // its point nearest to the middle of the column
@@ -50,7 +50,7 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
   vec3 albedo = material.diffuse.rgb;
   float coverage = 1.0;
   vec2 texcoord = cornerTexcoords[0] * weights.x + cornerTexcoords[1] * weights.y + cornerTexcoords[2] * weights.z;
-  // A column is a voxel wide: the gradients of the affine map select the mip that averages over a voxel.
+  // A column is one voxel wide: the gradients of the affine map select the mip level that averages over a voxel.
   vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy;
   vec2 t1 = cornerTexcoords[1] - cornerTexcoords[0], t2 = cornerTexcoords[2] - cornerTexcoords[0];
   float doubleArea = e1.x * e2.y - e1.y * e2.x;
@@ -70,12 +70,12 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
   return result;
 }
 
-// Whether the mask removes all of the triangle there.
+// Whether the mask removes the triangle everywhere in the column.
 bool isHole(ColumnSample s) { return s.fragment.albedoBCoverage >> 16 == 0u; }
 
-// A point of the triangle in a voxel of the column, from its corner. Where the sample lies in another voxel than this one it goes along the
-// triangle to this one's depth: only moved in depth it would lie off the triangle, and in its shadow. The axis of the columns is that which
-// the triangle faces most, so that the way through the voxel is no longer than half of it along each axis.
+// A point of the triangle in a voxel of the column, relative to the voxel's corner. If the sample lies in another voxel of the column, it
+// slides along the triangle to the depth of this voxel: moved in depth only, it would leave the triangle and lie in its shadow. Columns run
+// along the dominant axis of the normal, so the sample moves by at most half a voxel along each axis.
 vec3 placeIn(ColumnSample s, ivec3 voxel) {
   vec3 place = s.centre - vec3(voxel);
   float missing = clamp(place.z, 0.0, 1.0) - place.z;

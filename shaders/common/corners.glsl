@@ -1,5 +1,5 @@
 // The corners of one triangle in voxels, permuted so that z is the dominant axis of its normal.
-// Including files declare the scene's geometry (common/scene.glsl), the indices and where the grid lies (gridLow, voxelSize) before.
+// Including files first declare the scene's geometry (common/scene.glsl), the indices, and the position of the grid (gridLow, voxelSize).
 #ifndef LUMIVOX_CORNERS
 #define LUMIVOX_CORNERS
 #include "common/triangle.glsl"

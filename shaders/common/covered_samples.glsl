@@ -1,6 +1,6 @@
-// Coverage of a voxel's sides by samples, as in 3D clipmaps (thesis 004 Sec. 3.5.2). Including files declare before: kMostSamples,
-// sampleCount, samples (x and y inside the pixel, 0..1), thickness (voxels), mostScale (pixels along a voxel, at most); and have
-// common/triangle.glsl.
+// Coverage of a voxel's sides by samples, as in 3D clipmaps (thesis 004 Sec. 3.5.2). Including files first include common/triangle.glsl and
+// declare kMostSamples, sampleCount, samples (x and y inside the pixel, 0..1), thickness (voxels) and mostScale (largest number of pixels
+// along a voxel).
 #ifndef LUMIVOX_COVERED_SAMPLES
 #define LUMIVOX_COVERED_SAMPLES
 
@@ -19,8 +19,9 @@ uint nearestSample(vec2 point) {
   return 1u << best;
 }
 
-// Bits of the planes across the grid's axes x, y, z that the covered samples of a slice of voxels set, for a triangle with this dominant
-// axis: of that axis the samples as they are; they are projected into the other planes, where the surface is made thicker along it.
+// Bits that the covered samples of a slice of voxels set in the planes across the grid's axes x, y, z, for a triangle with this dominant
+// axis. The plane across the dominant axis takes the samples unchanged. The other two planes take their projections, with the surface
+// thickened along the dominant axis.
 uint sideMasks(uint covered, float depths[kMostSamples], float slice, int axis) {
   uvec3 masks = uvec3(0u, 0u, covered);  // across the permuted axes
   for (int i = 0; i < sampleCount; ++i) {
@@ -36,8 +37,8 @@ uint sideMasks(uint covered, float depths[kMostSamples], float slice, int axis) 
   return uint(across.x) | uint(across.y) << kMostSamples | uint(across.z) << (2 * kMostSamples);
 }
 
-// Adaptive supersampling: the pixels of a triangle that covers few samples are halved until it covers this many samples or the pixels are
-// the smallest.
+// Adaptive supersampling: if a triangle covers few samples, its pixels are halved until it covers this many samples or the pixels have
+// the smallest size.
 const float kEnoughSamples = 16.0;
 
 int scaleOf(mat3 corners) {

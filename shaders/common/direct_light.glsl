@@ -1,6 +1,6 @@
-// Direct light of the visible surfaces: emission, and every light sample times its visibility through both lobes, from a g-buffer. The
-// includer has the axes LIGHTS, GLOSSY, EMISSION and MEDIUM; with LIGHTS it defines visibleShare, the visible share of sample i of the
-// lights, in [0,1]: posWorld is on the surface, whose geometricNormal faces the side that is lit; toLight has unit length.
+// Direct light of the visible surfaces, from a g-buffer: emission, and every light sample times its visibility, reflected by both lobes.
+// The includer has the axes LIGHTS, GLOSSY, EMISSION and MEDIUM. With LIGHTS it defines visibleShare, the visible fraction of light sample
+// i, in [0,1]: posWorld is on the surface, geometricNormal faces the lit side, and toLight has unit length.
 #ifndef LUMIVOX_DIRECT_LIGHT
 #define LUMIVOX_DIRECT_LIGHT
 #include "common/brdf.glsl"
@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform DirectLight {
   vec3 eyeWorld;
   int lightCount;
   vec3 environment;  // radiance that a camera ray sees when it hits nothing
-  int mediumSteps;   // most steps through a medium that varies, towards a light
+  int mediumSteps;   // step limit through a heterogeneous medium, towards a light
 };
 
 layout(binding = 0) uniform sampler2D gPosition;
@@ -27,7 +27,7 @@ layout(binding = 3) uniform sampler2D gDiffuse;
 layout(binding = 5) uniform sampler2D gSpecular;
 #endif
 #if EMISSION
-// Read once and unfiltered: an image, since stores of voxels may need all other samplers.
+// An image, because voxel stores may need all remaining samplers; it is read once and unfiltered.
 layout(binding = 1, rgba32f) uniform readonly image2D emissionImage;
 #endif
 
@@ -43,7 +43,7 @@ vec3 reflectedLight(ivec2 pixel, vec3 posWorld) {
     vec3 toLight;
     vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
     float cosSurface = dot(normal, toLight);
-    // Light from below either plane does not reach the side that is seen.
+    // Light from below the shading plane or the geometric plane does not reach the visible side.
     if (cosSurface <= 0.0 || dot(geometricNormal, toLight) <= 0.0) continue;
     vec3 irradiance = perpendicular * cosSurface;
     // Visibility may be expensive: it is evaluated only for lights that emit in this direction.

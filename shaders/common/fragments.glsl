@@ -1,4 +1,4 @@
-// An invocation for each fragment of a list (common/voxel.glsl). Included after the local size, which is along x alone.
+// One invocation per fragment of a list (common/voxel.glsl). Included after the local size, which is along x only.
 // C++ side: port VoxelFragments, forEachFragment() in framework/include/lumivox/toolkit/bindings.h.
 #ifndef LUMIVOX_FRAGMENTS
 #define LUMIVOX_FRAGMENTS

@@ -1,5 +1,5 @@
-// Direct light that fragments are known to reflect, by the side that the camera saw: Mavridis & Papaioannou 2011, Sec. 3.2. Included behind
-// common/fragments.glsl and, to light the sides without known light, behind common/two_sided_light.glsl. C++ side:
+// Direct light that fragments are known to reflect on the side that the camera saw: Mavridis & Papaioannou 2011, Sec. 3.2. Included after
+// common/fragments.glsl and, to light the sides without known light, after common/two_sided_light.glsl. C++ side:
 // VoxelFragments::reflected in framework/include/lumivox/pipeline/ports/voxel_fragments.h.
 #pragma lumivox axis REFLECTED 0 1
 #ifndef LUMIVOX_KNOWN_LIGHT
@@ -10,13 +10,13 @@ layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };  //
 #endif
 
 struct KnownLight {
-  bool known;     // of one side; false: of none
-  int side;       // 0: that of the normal; 1: the one behind it
-  vec3 radiance;  // that leaves that side, W/(sr m^2)
+  bool known;     // the light of one side is known; false: of neither side
+  int side;       // 0: the side of the normal; 1: the back
+  vec3 radiance;  // that leaves this side, W/(sr m^2)
 };
 const KnownLight kNoLightKnown = KnownLight(false, 0, vec3(0.0));
 
-// With twoSided off backs reflect nothing, even if their light is known.
+// With twoSided off, backs reflect nothing, even if their light is known.
 KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 #if REFLECTED
   uint word = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
@@ -29,7 +29,7 @@ KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 }
 
 #ifdef LUMIVOX_TWO_SIDED_LIGHT
-// As addArriving, for the sides without known light.
+// Like addArriving, but only for the sides without known light.
 void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front,
                        inout vec3 back) {
   vec3 ignored = vec3(0.0);

@@ -15,12 +15,12 @@ struct LightSample {
   int firstView;             // its first shadow layer, -1 without shadow
   vec3 power;                // directional: irradiance W/m^2; point, spot: intensity W/sr; area: radiance times area W/sr
   int viewCount;             // shadow layers: 1, or the 6 faces of a cube
-  float cosInner, cosOuter;  // of a spot; of an area sample cosInner is partOfLight()
+  float cosInner, cosOuter;  // of a spot; for an area sample, cosInner holds partOfLight()
   float texelWidth;          // of a shadow texel: m (directional), or m per metre of distance
-  float patchRadiusSquared;  // of the patch that an area sample stands for, m^2
+  float patchRadiusSquared;  // of the patch that an area sample represents, m^2
 };
 
-// Share of an area light's samples that this one is, 1 over the number of those that light the same surfaces; 1 for other lights.
+// 1 over the number of samples of the same area light that light the same surfaces; 1 for other lights.
 float partOfLight(LightSample light) { return light.kind == kLightArea ? light.cosInner : 1.0; }
 
 layout(std430, binding = 5) readonly buffer Lights { LightSample lights[]; };
@@ -29,8 +29,8 @@ layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
 layout(binding = 7) uniform sampler2DArrayShadow shadowDepth;
 #endif
 
-// Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight is made unit length. A point in which the
-// light itself lies has no direction to it: both are 0.
+// Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight has unit length. At the light's own
+// position there is no direction to the light: irradiance and toLight are 0.
 vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
   int kind = light.kind;
   if (kind == kLightDirectional) {
@@ -52,7 +52,7 @@ vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
   return light.power * (shape / distanceSquared);
 }
 
-// Face of a cube map that holds a direction: +x -x +y -y +z -z.
+// Number of the cube map face that holds a direction, in the order +x -x +y -y +z -z.
 int cubeFace(vec3 direction) {
   vec3 size = abs(direction);
   if (size.x >= size.y && size.x >= size.z) return direction.x >= 0.0 ? 0 : 1;
@@ -62,7 +62,7 @@ int cubeFace(vec3 direction) {
 
 #ifdef SHADOW_VIEWS
 // Visible fraction in [0,1]. The point is moved along its normal by a texel of the shadow view, so that a surface does not shadow
-// itself (normal offset); geometricNormal faces the side that is lit.
+// itself (normal offset); geometricNormal faces the lit side.
 float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
   int layer = light.firstView;
   if (layer < 0) return 1.0;
@@ -75,7 +75,7 @@ float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 to
   vec4 clip = views[layer] * vec4(lookup, 1.0);
   if (clip.w <= 0.0) return 1.0;
   vec3 projected = clip.xyz / clip.w;
-  // Row 0 of a shadow layer is its top, as in every texture that is drawn to.
+  // Row 0 of a shadow layer is its top, as in every render target.
   vec2 texcoord = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y);
   if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThan(texcoord, vec2(1.0)))) return 1.0;
   return texture(shadowDepth, vec4(texcoord, float(layer), min(projected.z, 1.0)));

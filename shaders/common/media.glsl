@@ -1,5 +1,5 @@
 // Participating media: their bounds and densities, and the optical depth along rays. C++ side: framework/include/lumivox/toolkit/media.h.
-// With the includer's axis MEDIUM at `varying`, densities are in textures; otherwise depths exist for homogeneous media only.
+// With the includer's axis MEDIUM at `varying`, densities are in textures; otherwise there are homogeneous media only.
 #ifndef LUMIVOX_MEDIA
 #define LUMIVOX_MEDIA
 #include "common/lights.glsl"
@@ -7,7 +7,7 @@
 
 struct MediumData {
   vec4 lowAnisotropy;      // xyz lowest corner of its bounds, m; w mean cosine g
-  vec4 highDensity;        // xyz highest corner; w which density texture, -1: density 1 everywhere
+  vec4 highDensity;        // xyz highest corner, m; w index of the density texture, -1: density 1 everywhere
   vec4 extinction;         // rgb sigma_t at density 1, 1/m
   vec4 scattering;         // rgb sigma_s at density 1, 1/m
   vec4 gridLowVoxel;       // xyz corner of voxel (0,0,0) of the texture, w size of a voxel, m
@@ -19,11 +19,11 @@ layout(std430, binding = 8) readonly buffer Media {
   MediumData media[];
 };
 
-const float kNoReach = 1e30;  // m; of rays that nothing stops
+const float kNoReach = 1e30;  // m; reach of rays without an end
 
-// Distances between which a ray of this reach is inside a box; begin >= end when it is not.
+// Distances between which a ray of this reach is inside a box; begin >= end if the ray misses the box.
 vec2 insideBox(vec3 low, vec3 high, vec3 origin, vec3 direction, float reach) {
-  // A direction along a side never meets that pair of sides; any sign of the huge reciprocal tells inside from outside.
+  // A ray parallel to a pair of sides never crosses them; either sign of the huge reciprocal separates inside from outside.
   vec3 reciprocal = 1.0 / mix(direction, vec3(1e-30), equal(direction, vec3(0.0)));
   vec3 a = (low - origin) * reciprocal, b = (high - origin) * reciprocal;
   vec3 near = min(a, b), far = max(a, b);
@@ -33,7 +33,7 @@ vec2 insideMedium(int i, vec3 origin, vec3 direction, float reach) {
   return insideBox(media[i].lowAnisotropy.xyz, media[i].highDensity.xyz, origin, direction, reach);
 }
 
-// Distances between which a ray is inside any medium.
+// Distances at which a ray first enters and last leaves a medium.
 vec2 insideMedia(vec3 origin, vec3 direction, float reach) {
   vec2 range = vec2(reach, 0.0);
   for (int i = 0; i < mediumCount; ++i) {
@@ -73,7 +73,7 @@ float densityAt(int i, vec3 posWorld) {
   return textureLod(density3, texcoord, 0.0).r;
 }
 
-// Optical depth of the heterogeneous media along a ray: midpoint rule, one step a voxel but at most `mostSteps`.
+// Optical depth of the heterogeneous media along a ray: midpoint rule, one step per voxel but at most `mostSteps`.
 vec3 varyingDepth(vec3 origin, vec3 direction, float reach, int mostSteps) {
   vec3 depth = vec3(0.0);
   for (int i = 0; i < mediumCount; ++i) {
@@ -110,7 +110,7 @@ vec3 opticalDepth(vec3 origin, vec3 direction, float reach, int mostSteps) {
   return depth;
 }
 
-// The transmittance of a light sample's light on its way to a point.
+// Transmittance of the media between a light sample and a point.
 vec3 transmittanceToLight(LightSample light, vec3 posWorld, int mostSteps) {
   vec3 direction;
   float reach;

@@ -1,8 +1,8 @@
-// Random numbers by hashing, so that a number depends on what it is for and on nothing else.
+// Random numbers by hashing: a number depends only on the words that name its purpose.
 #ifndef LUMIVOX_RANDOM
 #define LUMIVOX_RANDOM
 
-// Four words to four words (Jarzynski & Olano 2020, "Hash functions for GPU rendering", Sec. 4, pcg4d).
+// Hash of four words to four words (Jarzynski & Olano 2020, "Hash functions for GPU rendering", Sec. 4, pcg4d).
 uvec4 hash4(uvec4 v) {
   v = v * 1664525u + 1013904223u;
   v.x += v.y * v.w;

@@ -6,12 +6,12 @@
 // A patch of a surface that reflects light diffusely.
 struct SurfaceLight {
   vec4 positionArea;  // xyz posWorld, w area of the patch, m^2
-  vec4 normal;        // xyz unit, to the side that shines
+  vec4 normal;        // xyz unit, on the reflecting side
   vec4 flux;          // rgb reflected flux, W
 };
 
 // Share of a disc's flux that arrives on each square metre of a surface at posWorld, 1/m^2, without visibility: the form factor of the disc
-// over its area, cos cos / (pi d^2 + area), which is exact on its axis (Lambert) and stays finite where it is near.
+// over its area, cos cos / (pi d^2 + area). It is exact on the axis of the disc (Lambert) and stays finite near the disc.
 float sharePerArea(SurfaceLight light, vec3 posWorld, vec3 normal) {
   vec3 path = light.positionArea.xyz - posWorld;
   float distanceSquared = dot(path, path);
@@ -22,7 +22,7 @@ float sharePerArea(SurfaceLight light, vec3 posWorld, vec3 normal) {
 }
 
 // Irradiance at a surface, W/m^2, without visibility (Dachsbacher & Stamminger 2005, Sec. 3.1, Eq. 1: a light of intensity
-// flux / pi times the cosine). Deviates: the patch is a disc of its area; as area goes to 0 it is the published inverse square law.
+// flux / pi times the cosine). Deviates: the patch is a disc of its area; as the area goes to 0, this is the published inverse square law.
 vec3 surfaceLightIrradiance(SurfaceLight light, vec3 posWorld, vec3 normal) {
   return light.flux.rgb * sharePerArea(light, posWorld, normal);
 }

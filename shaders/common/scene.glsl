@@ -27,7 +27,7 @@ layout(std430, binding = 2) readonly buffer Texcoords { float texcoords[]; };
 layout(std430, binding = 3) readonly buffer Objects { ObjectData objects[]; };
 #endif
 
-// Of vertex shaders alone.
+// For vertex shaders only.
 #ifdef SCENE_VERTICES
 vec3 vertexPosWorld() {
   int i = 3 * gl_VertexID;
@@ -47,7 +47,7 @@ vec2 vertexTexcoord() {
 layout(std430, binding = 4) readonly buffer Materials { MaterialData materials[]; };
 #endif
 
-// Coverage below this is a hole: the same threshold as in the path tracer.
+// A mask value below this is a hole: the same threshold as in the path tracer.
 const float kMaskThreshold = 0.5;
 
 #endif

@@ -1,4 +1,4 @@
-// Textures of the material, as the axes TEXTURES and MASKS say.
+// Textures of the material, declared according to the axes TEXTURES and MASKS.
 #ifndef LUMIVOX_TEXTURES
 #define LUMIVOX_TEXTURES
 #if TEXTURES

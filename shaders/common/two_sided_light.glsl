@@ -1,10 +1,10 @@
-// The light that arrives at both sides of a surface without a viewer. Included behind common/lights.glsl, with SHADOW_VIEWS for shadows,
-// and, with an axis MEDIUM, behind common/media.glsl.
+// The light that arrives at both sides of a surface. Included after common/lights.glsl, with SHADOW_VIEWS for shadows, and, with an axis
+// MEDIUM, after common/media.glsl.
 #ifndef LUMIVOX_TWO_SIDED_LIGHT
 #define LUMIVOX_TWO_SIDED_LIGHT
 
-// Adds the irradiance of a point by a light, W/m^2: on the side of the normal, and, if that counts, behind it. mediumSteps: largest number
-// of steps through a heterogeneous medium towards a light.
+// Adds the irradiance at a point due to one light, W/m^2: to `front` on the side of the normal; to `back` behind it, only if twoSided.
+// mediumSteps: largest number of steps through a heterogeneous medium towards a light.
 void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
   vec3 toLight;
   vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
@@ -12,7 +12,7 @@ void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSide
   bool behind = cosSurface < 0.0;
   if (behind && !twoSided) return;
   cosSurface = abs(cosSurface);
-  if (!(cosSurface > 0.0)) return;  // also where a light lies on the surface and has no direction
+  if (!(cosSurface > 0.0)) return;  // also if the light lies at the point: there is no direction to it
   vec3 arriving = perpendicular * cosSurface;
 #ifdef SHADOW_VIEWS
   arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
@@ -26,7 +26,7 @@ void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSide
   else front += arriving;
 }
 
-// The same for each of the first lights.
+// addArrivingFrom for the first lightCount lights.
 void addArriving(int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
   for (int i = 0; i < lightCount; ++i) addArrivingFrom(lights[i], posWorld, normal, twoSided, mediumSteps, front, back);
 }

@@ -13,7 +13,7 @@ struct VoxelFragment {
   uint emission;  // radiance, W/(sr m^2), three mantissas with a shared exponent
 };
 
-// A triangle with sharper corners than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding.
+// A triangle with a sharper corner than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding error.
 const float kNeedle = 1e-3;
 
 uint packVoxel(ivec3 voxel) { return uint(voxel.x) | uint(voxel.y) << 10 | uint(voxel.z) << 20; }
@@ -36,12 +36,12 @@ vec2 unpackSigned(uint word) {
   return max(vec2(steps) / 32767.0, -1.0);
 }
 
-// packHalf2x16 of the nearest half-precision numbers, of two alike the even one. The rounding of the built-in is up to the driver, and one
+// packHalf2x16 with rounding to the nearest half-precision number, ties to even. The driver chooses the rounding of the built-in, and one
 // driver truncates values that were just read from a texture.
 uint packHalves(vec2 value) {
   const float kLeastNormal = 1.0 / 16384.0, kStepBelow = 1.0 / 16777216.0;
   uvec2 bits = floatBitsToUint(value);
-  vec2 nearest = uintBitsToFloat(bits + 0xfffu + (bits >> 13 & 1u) & ~0x1fffu);  // the lowest 13 bits are gone
+  vec2 nearest = uintBitsToFloat(bits + 0xfffu + (bits >> 13 & 1u) & ~0x1fffu);  // clears the lowest 13 bits
   return packHalf2x16(mix(nearest, roundEven(value / kStepBelow) * kStepBelow, lessThan(abs(value), vec2(kLeastNormal))));
 }
 
@@ -58,8 +58,8 @@ vec3 unpackNormal(uint word) {
   return normalize(normal);
 }
 
-// Non-negative values of any magnitude, 8 bits each beside a shared exponent (Ward 1991, "Real pixels"): the largest is right to 1/256,
-// the others to 1/256 of the largest.
+// Non-negative values of any magnitude, 8 bits each and a shared exponent (Ward 1991, "Real pixels"). The error of each value is at most
+// 1/256 of the largest value.
 uint packShared(vec3 value) {
   float largest = max(value.x, max(value.y, value.z));
   if (!(largest > 0.0)) return 0u;
@@ -75,7 +75,7 @@ vec3 unpackShared(uint word) {
   return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * unit;
 }
 
-// The direct light that the fragment reflects is not known: a reader lights it itself (VoxelFragments::kNotKnown).
+// The direct light that the fragment reflects is not known: the reader lights the fragment itself (VoxelFragments::kNotKnown).
 const uint kNotKnown = 0xffffffffu;
 // Bit of VoxelFragment::offset: the known light leaves the fragment on the back of its normal, the side that the camera saw.
 const uint kSeenBehind = 1u << 30;

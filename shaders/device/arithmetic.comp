@@ -1,6 +1,6 @@
 #version 450
-// Arithmetic in registers: eight independent chains, so that no result is waited for. Each chain converges to a number that is known,
-// which the caller checks.
+// Arithmetic in registers: eight independent chains, so that no latency shows. Each chain converges to
+// a known number, which the caller checks.
 #pragma lumivox axis FUNCTION product fused integer exponential sine root
 
 layout(local_size_x = 512) in;
@@ -27,7 +27,7 @@ vec4 next(vec4 x) { return inversesqrt(x); }                   // to 1
 #endif
 
 #if FUNCTION == FUNCTION_INTEGER
-// Marsaglia 2003, "Xorshift RNGs": no compiler can make fewer steps of many.
+// Marsaglia 2003, "Xorshift RNGs": a compiler cannot merge several steps.
 uvec4 next(uvec4 x) {
   x ^= x << 13u;
   x ^= x >> 17u;

@@ -1,5 +1,5 @@
 #version 450
-// Storage buffers: reading, reading what all others read, writing, atomics on words of one's own and on one word for all.
+// Storage buffers: reads, reads of the same element by all invocations, writes, atomics on separate words, and atomics on one word for all.
 #pragma lumivox axis ACCESS read same write add contend
 
 layout(local_size_x = 512) in;
@@ -7,7 +7,7 @@ layout(local_size_x = 512) in;
 layout(std140, binding = 0) uniform Parameters {
   uint rounds;
   uint mask;          // number of elements less one; a power of two less one
-  uint apart;         // elements from one access to the next
+  uint apart;         // distance between two accesses, in elements
 };
 #if ACCESS == ACCESS_READ || ACCESS == ACCESS_SAME || ACCESS == ACCESS_WRITE
 layout(std430, binding = 0) buffer Elements { uvec4 elements[]; };

@@ -1,5 +1,5 @@
 #version 450
-// Many small squares, or one triangle over everything.
+// Many small triangles, one per pixel, or one triangle that covers the whole target.
 #pragma lumivox axis SHAPE whole small
 
 layout(std140, binding = 0) uniform Parameters {

@@ -1,5 +1,5 @@
 #version 450
-// Loads, stores and atomics of images: texels of one's own, side by side with the neighbours', or one texel for all.
+// Loads, stores and atomics of images: on separate, adjacent texels, or on one texel for all invocations.
 #pragma lumivox axis KIND d2 d3
 #pragma lumivox axis FORMAT rgba16f rgba32f r32ui
 #pragma lumivox axis ACCESS write read add contend
@@ -38,8 +38,8 @@ const uint kAccessesPerRound = 8u;
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  // Neighbours side by side. Each goes through eight rows (slices of a volume) that are an eighth of the size apart, so that all
-  // together reach every texel; what a texel holds in the end is its row or slice.
+  // Neighbouring invocations use adjacent texels. Each visits eight rows (slices of a volume), an eighth of the size apart, so that all
+  // together reach every texel. The final value of a texel is its row or slice.
 #if KIND == KIND_D3
   ivec3 at = ivec3(i, i / uint(size.x), i / uint(size.x * size.y)) & (size - 1);
 #define along z

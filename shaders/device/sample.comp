@@ -1,15 +1,15 @@
 #version 450
-// Texture sampling at its best (neighbours read neighbouring texels) and at its worst (every position anywhere).
+// Texture sampling in the best case (neighbouring invocations read neighbouring texels) and in the worst case (random positions).
 #pragma lumivox axis KIND d2 d3 shadow
 #pragma lumivox axis PATTERN coherent scattered
 
 layout(local_size_x = 512) in;
 
 layout(std140, binding = 0) uniform Parameters {
-  uint rounds;        // of kSamplesPerRound
+  uint rounds;        // rounds of kSamplesPerRound samples
   uint width;         // invocations in a row
-  float level;        // of the mips; between two of them both are read
-  float step;         // of the position from sample to sample, along each axis
+  float level;        // mip level; a fraction reads two levels
+  float step;         // change of the position from sample to sample, along each axis
 };
 #if KIND == KIND_D3
 layout(binding = 0) uniform sampler3D volume;
@@ -45,7 +45,7 @@ vec4 take(vec3 position) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  // Rows of neighbours, all inside the middle of the texture, from where steps lead at most 0.25 further.
+  // Rows of neighbours in the middle of the texture; steps move them at most 0.25 further.
   vec3 position = vec3(float(i % width) / float(width), float(i / width % width) / float(width),
                        float(i % 61u) / 61.0) * 0.5 + 0.125;
 #if PATTERN == PATTERN_SCATTERED
@@ -54,7 +54,7 @@ void main() {
   vec4 sum = vec4(0.0);
   vec3 start = position;
   for (uint round = 0u; round < rounds; ++round) {
-    // Rounds differ a little, so that none of them is the same as another.
+    // Rounds differ a little, so that no two rounds are the same.
     position = start + float(round & 7u) * 0.125 * step;
     for (uint k = 0u; k < kSamplesPerRound; ++k) {
       position = nextPosition(position);

@@ -1,5 +1,5 @@
 #version 450
-// The image is the sum of its components. The input that is absent adds nothing, and takes nothing away.
+// The image is the sum of its components, with the surfaces attenuated by the media. An absent input has no effect.
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis TRANSMITTANCE 0 1

@@ -30,7 +30,7 @@ layout(location = 5) out vec4 outEmission;
 #endif
 
 void main() {
-  // Derivatives, and samples which choose their mip level by them, before any discard: they are undefined after it.
+  // Derivatives, and texture samples that select their mip level by derivatives, come before any discard: after it they are undefined.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
   MaterialData material = materials[materialIndex];
   vec3 albedo = material.diffuse.rgb;
@@ -47,7 +47,7 @@ void main() {
   float size = length(geometricNormal);
   geometricNormal = size > 0.0 ? geometricNormal / size : normalize(normalWorld);
   if (dot(geometricNormal, toEye) < 0.0) geometricNormal = -geometricNormal;
-  // Surfaces are two-sided: the shading normal is turned to the side of the geometric one that is seen.
+  // Surfaces are two-sided: the shading normal is turned to the visible side of the geometric normal.
   vec3 normal = normalize(normalWorld);
   if (dot(normal, geometricNormal) < 0.0) normal = -normal;
 

@@ -1,7 +1,7 @@
 #version 450
-// Samples of light that lie 1, 2 or 4 pixels apart, smoothed and brought to all pixels: a joint bilateral filter guided by the g-buffer.
-// Along both axes at once; or first along the rows and then along the columns (Pham & van Vliet 2005), whose first result has a texel for
-// every pixel along x and for every sample along y.
+// Smooths samples of light that lie 1, 2 or 4 pixels apart and upsamples them to all pixels: a joint bilateral filter guided by the
+// g-buffer. It runs along both axes at once; or separably, first along the rows and then along the columns (Pham & van Vliet 2005). The
+// first result then has one texel per pixel along x and per sample along y.
 #pragma lumivox axis REFLECTS 0 1  // arriving radiance is multiplied by the diffuse albedo, last, so that textures stay sharp
 #include "common/joint_bilateral.glsl"
 #include "common/sampled_pixels.glsl"
@@ -15,13 +15,13 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 eye;
   float pixelAngle;  // width of a pixel at a distance of 1
   ivec2 every;       // pixels from one texel of the input to the next
-  ivec2 everyOut;    // and of the output
+  ivec2 everyOut;       // the same for the output
   ivec2 along;       // 1: blended along that axis
-  int radius;        // pixels on either side that are blended, as far as there are samples; two samples at least where `every` is not 1
+  int radius;        // pixels blended on either side, as far as samples exist; at least two samples if `every` is not 1
   int spacing;       // pixels from one sample to the next, before any pass
-  float tolerance;   // off a pixel's plane, in widths of a sample there, at which a sample counts 1/e
-  float power;       // of the cosine between the normals
-  float nothing;     // of pixels without a surface
+  float tolerance;   // distance from a pixel's plane, in widths of a sample, at which a weight is 1/e
+  float power;       // exponent of the cosine between the normals
+  float nothing;     // value of pixels without a surface
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
@@ -33,7 +33,7 @@ layout(binding = 0, rgba32f) uniform writeonly image2D outputImage;
 
 ivec2 pixelOf(ivec2 texel, ivec2 apart) { return sampledPixel(texel, apart, textureSize(gPosition, 0)); }
 
-// The first and last texels along an axis, and the reach of the kernel.
+// The first and last texels along each axis, and the reach of the kernel in texels.
 void windowOf(ivec2 at, ivec2 pixel, out ivec2 first, out ivec2 last, out vec2 reach) {
   for (int axis = 0; axis < 2; ++axis) {
     if (along[axis] == 0) {
@@ -53,7 +53,7 @@ void windowOf(ivec2 at, ivec2 pixel, out ivec2 first, out ivec2 last, out vec2 r
 }
 
 float weightOf(float away, float reach) {
-  const float kDeviation = 0.5;  // of the Gaussian, as a share of the reach
+  const float kDeviation = 0.5;  // standard deviation of the Gaussian, as a share of the reach
   if (kernel == kGaussian) return exp(-0.5 * away * away / (kDeviation * kDeviation * reach * reach));
   return tent(away, reach, 0.0);
 }

@@ -1,6 +1,7 @@
 #version 450
-// Between two bounces: what arrives at occupied voxels leaves them again. Mavridis & Papaioannou 2011, end of Sec. 3.3, alternate two buffers
-// and do not say how. Here both sides of a voxel's surface take their irradiance and send it, times albedo / pi, into their half spaces.
+// Between two bounces: occupied voxels reflect the light that arrives at them. Mavridis & Papaioannou 2011, end of Sec. 3.3, alternate two
+// buffers and do not say how light is reflected. Here each side of a voxel's surface emits its
+// irradiance, times albedo / pi, into its half space.
 #define VOLUMES 3
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "reconstruct.glsl"
@@ -12,7 +13,7 @@ layout(binding = 0, rgba32f) uniform writeonly image3D redImage;
 layout(binding = 1, rgba32f) uniform writeonly image3D greenImage;
 layout(binding = 2, rgba32f) uniform writeonly image3D blueImage;
 
-// Radiance that the side of a normal sends, W/(sr m^2).
+// Radiance that the side of a normal reflects, W/(sr m^2).
 vec3 sentInto(ivec3 voxel, vec3 normal, vec3 reflects) {
   Arriving arriving;
   if (feedsOwn != 0) arriving.volumes = vec4[3](texelFetch(red, voxel, 0), texelFetch(green, voxel, 0), texelFetch(blue, voxel, 0));

@@ -1,3 +1,3 @@
-// How an occupied voxel takes up what arrives.
+// How an occupied voxel receives light for the next bounce.
 #include "surface_sides.glsl"
-layout(constant_id = 12) const int feedsOwn = 0;  // 1: by its own coefficients; 0: as a surface in its middle
+layout(constant_id = 12) const int feedsOwn = 0;  // 1: by its own coefficients; 0: like a surface at its centre

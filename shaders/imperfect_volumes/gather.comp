@@ -1,5 +1,5 @@
 #version 450
-// What visible surfaces reflect of the light in the volume, or how open they are: Mavridis & Papaioannou 2011, Sec. 3.4 and 3.5, Eq. 4 and 6.
+// Light of the volume that visible surfaces reflect, or their openness: Mavridis & Papaioannou 2011, Sec. 3.4 and 3.5, Eq. 4 and 6.
 #pragma lumivox axis OF light openness
 layout(local_size_x = 8, local_size_y = 8) in;
 #if OF == OF_LIGHT
@@ -8,11 +8,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define VOLUMES 1
 #endif
 #include "reconstruct.glsl"
-layout(constant_id = 0) const int closure = 0;  // 1: both sides differ as they did, and neither is negative
+layout(constant_id = 0) const int closure = 0;  // 1: keeps the difference of both sides, and makes neither negative
 
 layout(std140, binding = 0) uniform Gathering {
   vec3 environment;  // W/(sr m^2)
-  float unit;        // that the number 1 of the volume stands for
+  float unit;        // physical value of the number 1 of the volume
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -25,7 +25,7 @@ layout(binding = 1, rgba32f) uniform writeonly image2D clippedImage;
 layout(binding = 0, rgba32f) uniform writeonly image2D occlusionImage;
 #endif
 
-// Irradiance over pi of both bands; and what was negative of it before, as a positive value.
+// Irradiance over pi from both bands. `clipped`: its negative part before clamping or closure, as a positive value.
 float meanRadiance(vec4 coefficients, vec3 normal, out float clipped) {
   vec4 cosine = shClampedCosine(normal);
   float mean = coefficients.x * cosine.x / kPi, net = dot(coefficients.yzw, cosine.yzw) / kPi;
@@ -39,13 +39,13 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
   vec4 posWorld = texelFetch(gPosition, pixel, 0);
-  precise vec3 surface = (posWorld.xyz - gridLow) / voxelSize;  // the same as where voxels are marked
+  precise vec3 surface = (posWorld.xyz - gridLow) / voxelSize;  // equal, to the bit, to mark_surfaces.comp
   vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
   bool isSurface = posWorld.w > 0.0, isInside = isInVolume(surface);
   Arriving arriving;
   if (isSurface && isInside) arriving = arrivingAt(surface, texelFetch(gGeometricNormal, pixel, 0).xyz);
 #if OF == OF_LIGHT
-  // Outside of the volume there is the environment alone.
+  // Outside the volume, only the environment is reflected.
   vec3 reflected = isSurface ? environment : vec3(0.0), cut = vec3(0.0);
   if (isSurface && isInside)
     for (int channel = 0; channel < 3; ++channel)

@@ -1,7 +1,7 @@
 #version 450
-// Mavridis & Papaioannou 2011, Sec. 3.1: the direct light that each fragment reflects diffusely, on both sides; and of each voxel the
-// brightest of it, in which inject_add.comp counts, so that a dark voxel beside a very bright one keeps its light. Sec. 3.2: where the image
-// has the light of a visible side, it is that (REFLECTED), and the lights shine on the other side alone.
+// Mavridis & Papaioannou 2011, Sec. 3.1: the direct light that each fragment reflects diffusely, on both sides; and the largest radiance in
+// each voxel, the unit of inject_add.comp, so that a dark voxel beside a very bright one keeps its light. Sec. 3.2: if the image has the
+// light of a visible side, that light is used (REFLECTED), and the lights illuminate only the other side.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox require LIGHTS || REFLECTED
 layout(local_size_x = 64) in;
@@ -18,10 +18,10 @@ layout(std140, binding = 0) uniform Lighting {
   vec3 gridLow;        // m
   float voxelSize;     // m
   int lightCount;
-  float mostRadiance;  // W/(sr m^2): what no voxel of this size can reflect, however near a light is
+  float mostRadiance;  // W/(sr m^2): limit of the radiance of a voxel of this size, however near a light is
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): front, back, three channels each
-layout(std430, binding = 3) buffer Brightest { uint brightest[]; };  // bits of a float: for numbers from 0 on their order is that of the numbers
+layout(std430, binding = 3) buffer Brightest { uint brightest[]; };  // bits of a non-negative float, which order like the float
 
 void main() {
   uint index = listIndex();

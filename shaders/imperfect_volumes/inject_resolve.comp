@@ -1,7 +1,7 @@
 #version 450
-// The means of each occupied voxel as spherical harmonics of the radiance that it sends (Mavridis & Papaioannou 2011, Sec. 3.1 and Eq. 1).
-// A side that shines L alike over its half space has the coefficients L (2 pi Y0, pi Y1 n); one whose radiance falls as the cosine and that
-// sends as much, 3/2 L cos, has 3/2 L (pi Y0, 2/3 pi Y1 n): the same in the second band.
+// The means of each occupied voxel as spherical harmonics of its outgoing radiance (Mavridis & Papaioannou 2011, Sec. 3.1 and Eq. 1). A
+// side with a uniform radiance L over its half space has the coefficients L (2 pi Y0, pi Y1 n). A side with the same exitance whose
+// radiance falls with the cosine, 3/2 L cos, has 3/2 L (pi Y0, 2/3 pi Y1 n): the second band is the same.
 #pragma lumivox axis PRECISION float half
 #include "common/spherical_harmonics.glsl"
 layout(local_size_x = 64) in;
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int cosineLobe = 0;
 
-layout(std140, binding = 0) uniform Resolving { float unit; };  // W/(sr m^2) that the number 1 stands for
+layout(std140, binding = 0) uniform Resolving { float unit; };  // radiance of the number 1, W/(sr m^2)
 layout(std430, binding = 6) readonly buffer Brightest { uint brightest[]; };
 #if PRECISION == PRECISION_HALF
 layout(binding = 0, rgba16f) uniform writeonly image3D redImage;
@@ -33,7 +33,7 @@ void main() {
   uint slot;
   ivec3 voxel;
   if (!slotHere(slot, voxel)) return;
-  // Coverages of nothing at all leave no average.
+  // If all coverages are 0 there is no average.
   float scale = sums[slot].coverage > 0u ? kFixedPoint / float(sums[slot].coverage) * uintBitsToFloat(brightest[slot]) / unit : 0.0;
   imageStore(redImage, voxel, coefficientsOf(slot, 0, scale));
   imageStore(greenImage, voxel, coefficientsOf(slot, 1, scale));

@@ -1,5 +1,5 @@
 #version 450
-// A list of the marked voxels, in no order.
+// Lists the marked voxels, in no order.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "common/voxel.glsl"
 #include "volume.glsl"

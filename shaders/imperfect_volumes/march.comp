@@ -1,7 +1,7 @@
 #version 450
-// Mavridis & Papaioannou 2011, Sec. 3.3, Eq. 3: what arrives in the middle of each voxel from all sides, by rays through the volume. OF light:
-// the radiance that voxels send; OF openness: 1 for rays that meet nothing within their reach, 0 for the others (Sec. 3.5, Eq. 6).
-// WALK steps: a look at every step; exact: every voxel on the way (common/bit_grid.glsl). LISTED: the voxels of a list alone.
+// Mavridis & Papaioannou 2011, Sec. 3.3, Eq. 3: the light that arrives at the centre of each voxel from all sides, by ray marching.
+// OF light: the radiance that voxels emit; OF openness: 1 for rays without a hit within their reach, 0 for the others (Sec. 3.5, Eq. 6).
+// WALK steps: tests fixed steps; WALK exact: tests every voxel on the ray (common/bit_grid.glsl). LISTED: only the voxels of a list.
 #pragma lumivox axis OF light openness
 #pragma lumivox axis WALK steps exact
 #pragma lumivox axis LISTED 0 1
@@ -11,24 +11,24 @@
 #include "volume.glsl"
 #include "surface_sides.glsl"
 
-// Eight invocations share the rays of a voxel, and the first of them adds up what they found, always in the same order.
+// Eight invocations share the rays of a voxel; the first one adds up their sums, always in the same order.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 const uint kTogether = 8u;
 
-layout(constant_id = 0) const int branchless = 0;  // 1: marches on behind the first voxel that it meets, and discards
-layout(constant_id = 1) const int linear = 0;      // 1: occupied where half of what is interpolated is
-layout(constant_id = 2) const int harmonics = 0;   // 1: what a voxel sends is what its two bands say
+layout(constant_id = 0) const int branchless = 0;  // 1: marches on after the first hit, and ignores later hits
+layout(constant_id = 1) const int linear = 0;      // 1: interpolates occupancy and radiance; occupied from 1/2 on
+layout(constant_id = 2) const int harmonics = 0;   // 1: a voxel's radiance is the value of its two bands
 layout(constant_id = 3) const int sharedSet = 0;   // 1: the same directions for all voxels
 
 layout(std140, binding = 0) uniform Rays {
   vec3 environment;  // W/(sr m^2)
-  float guard;       // voxels that are skipped
+  float guard;       // distance that is skipped at the start, voxels
   uvec2 seed;
   float step;        // voxels
-  int mostSteps;     // of the longest ray
+  int mostSteps;     // step limit of the longest ray
   float reach;       // voxels
-  int pairs;         // of opposite rays
+  int pairs;         // number of pairs of opposite rays
   int firstPair, pairsAtOnce;
   float reflectedUnit;  // W/(sr m^2)
   int bounce;
@@ -57,7 +57,7 @@ layout(std430, binding = 1) readonly buffer List { uint list[]; };
 
 shared vec4 found[gl_WorkGroupSize.x * kVolumes];
 
-// What a ray comes to: a voxel, or with `linear` the eight around a place.
+// The hit of a ray: a voxel; with `linear`, the eight voxels around `place`.
 struct Meeting {
   bool any;
   ivec3 voxel;
@@ -145,8 +145,8 @@ vec3 seenAlong(vec3 origin, vec3 direction) {
 float openAlong(vec3 origin, vec3 direction) { return meet(origin, direction).any ? 0.0 : 1.0; }
 #endif
 
-// One of each pair of opposite directions: spirals of equal bands of the upper half of the sphere, which a voxel turns and shifts by numbers
-// of its own, so that every direction is as likely as any other.
+// One of each pair of opposite directions: a spiral with equal areas on the upper half of the sphere. Each voxel rotates and shifts it by
+// its own random numbers, so that all directions are equally likely.
 vec3 directionOf(int pair, vec2 shift) {
   float z = (float(pair) + shift.x) / float(pairs);
   float angle = 2.0 * kPi * fract(float(pair) * (kGoldenAngle / (2.0 * kPi)) + shift.y);
@@ -188,7 +188,7 @@ void main() {
   for (int v = 0; v < kVolumes; ++v) found[kVolumes * gl_LocalInvocationID.x + v] = sums[v];
   barrier();
   if (!isVoxel || lane != 0u) return;
-  float weight = 2.0 * kPi / float(pairs);  // 4 pi over the rays
+  float weight = 2.0 * kPi / float(pairs);  // 4 pi over the number of rays
   for (uint other = 1u; other < kTogether; ++other)
     for (int v = 0; v < kVolumes; ++v) sums[v] += found[kVolumes * (gl_LocalInvocationID.x + other) + v];
   bool isFirst = firstPair == 0;

@@ -2,7 +2,7 @@
 #include "neighbours.glsl"
 layout(binding = 0, r32ui) uniform writeonly uimage3D marks;
 
-// The lowest of the eight voxels that neighbour i is read from, or its only one; false where it does not count.
+// The lowest of the eight voxels from which neighbour i is filtered, or its only voxel; false if its weight is 0.
 bool readBlock(int i, vec3 surface, vec3 normal, out ivec3 low) {
   vec3 place;
   bool counts = neighbour(i, surface, normal, place) > 0.0;

@@ -1,20 +1,20 @@
 #version 450
-// The voxels that visible surfaces read. What the pixel to the left or the one before it reads as well is theirs to mark: stores cost more
-// than all else here, and voxels are seen by many pixels.
+// Marks the voxels that visible surfaces read. A voxel that the pixel to the left or above reads too is left to that pixel: stores are the
+// largest cost here, and many pixels read the same voxel.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "mark.glsl"
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gGeometricNormal;
 
 struct SurfacePoint {
-  bool any;  // in the volume
+  bool any;  // a surface inside the volume
   vec3 place, normal;
 };
 
 SurfacePoint seenAt(ivec2 pixel) {
   if (any(lessThan(pixel, ivec2(0)))) return SurfacePoint(false, vec3(0.0), vec3(0.0));
   vec4 posWorld = texelFetch(gPosition, pixel, 0);
-  precise vec3 place = (posWorld.xyz - gridLow) / voxelSize;  // the same as in gather.comp
+  precise vec3 place = (posWorld.xyz - gridLow) / voxelSize;  // equal, to the bit, to gather.comp
   return SurfacePoint(posWorld.w > 0.0 && isInVolume(place), place, texelFetch(gGeometricNormal, pixel, 0).xyz);
 }
 

@@ -1,5 +1,5 @@
 #version 450
-// The voxels that occupied ones read, for what they pass on to the next bounce: on both sides.
+// Marks the voxels that occupied voxels read for the next bounce, on both sides.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "mark.glsl"
 #include "feeding.glsl"
@@ -9,7 +9,7 @@ layout(binding = 1) uniform sampler3D meanNormals;
 void main() {
   ivec3 voxel = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(voxel, resolution)) || texelFetch(opacity, voxel, 0).r <= occupied) return;
-  // Where the normals cancel out the light decides which way the surface looks: all around then.
+  // Where the normals cancel out, the light decides the surface's direction, which is not known yet: all voxels around are marked.
   vec3 mean = texelFetch(meanNormals, voxel, 0).xyz;
   if (feedsOwn != 0) {
     imageStore(marks, voxel, uvec4(1u));

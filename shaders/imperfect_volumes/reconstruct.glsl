@@ -1,11 +1,11 @@
-// The radiance that arrives at a surface point, from that of the voxels around it (Mavridis & Papaioannou 2011, Sec. 3.4, Eq. 5), and its
-// irradiance. Two bands weigh what comes from behind: L (1/4 + 1/2 cos theta) over the whole sphere in place of max(0, cos theta).
+// The radiance that arrives at a surface point, interpolated from the voxels around it (Mavridis & Papaioannou 2011, Sec. 3.4, Eq. 5). With
+// two bands its irradiance also counts light from behind: L (1/4 + 1/2 cos theta) over the whole sphere instead of max(0, cos theta).
 #include "neighbours.glsl"
 #include "surface_sides.glsl"
 
-layout(constant_id = 13) const int onlyFree = 0;  // 1: only free voxels count that are open to the surface; all where there is none
+layout(constant_id = 13) const int onlyFree = 0;  // 1: only free voxels visible from the surface count; if there is none, all
 
-// One volume for light without colour.
+// VOLUMES 1: a single volume for values without colour.
 #if VOLUMES == 3
 layout(binding = 5) uniform sampler3D red;
 layout(binding = 6) uniform sampler3D green;
@@ -30,11 +30,11 @@ void addVoxel(inout Arriving sum, ivec3 voxel, float weight) {
 
 bool isFree(ivec3 voxel) { return texelFetch(opacityAround, inVolume(voxel), 0).r <= occupied; }
 
-// Of ways that differ from the normal by the same angle but for rounding the first counts, in any unit of length.
+// Cosines that differ by less count as equal, and the first direction wins, so that rounding does not decide.
 const float kTie = 1e-3;
 
-// The free voxel before a surface point: its own, or that of the 26 around towards which its normal and the mean normal of all surfaces in
-// its voxel look together, so that along an edge it lies before both walls. False where there is none.
+// The free voxel in front of a surface point: its own voxel, or of the 26 voxels around it the free one closest to the direction of the
+// point's normal plus the mean normal in its voxel, so that along an edge it lies in front of both walls. False if there is none.
 bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
   before = inVolume(ivec3(floor(surface)));
   if (isFree(before)) return true;
@@ -53,8 +53,8 @@ bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
   return most > 0.0;
 }
 
-// Whether a voxel is free and seen from there, where it is at most three away along each axis, as with a shift of one voxel at most. Next to
-// each other there is nothing between them.
+// Whether a voxel is free and visible from the voxel `before`, at most three voxels away along each axis, as with a shift of at most one
+// voxel. Adjacent voxels always see each other.
 bool isOpen(ivec3 voxel, ivec3 before) {
   if (!isFree(voxel)) return false;
   ivec3 apart = abs(voxel - before);
@@ -63,7 +63,7 @@ bool isOpen(ivec3 voxel, ivec3 before) {
   return isFree(ivec3(floor(from + 0.4 * way))) && isFree(ivec3(floor(from + 0.6 * way)));
 }
 
-// Adds what lies at a place; returns the weight that it had: with `free` that of voxels that are open to `before` alone.
+// Adds the value at a position and returns its weight. With `free`, only voxels that are open to `before` count.
 float addPlace(inout Arriving sum, vec3 place, float weight, bool free, ivec3 before) {
   if (!isFiltered()) {
     ivec3 voxel = inVolume(ivec3(floor(place)));
@@ -94,7 +94,7 @@ float addPlace(inout Arriving sum, vec3 place, float weight, bool free, ivec3 be
   return all;
 }
 
-// Eq. 5. `surface` in voxels.
+// Eq. 5. `surface` is in voxels.
 Arriving arrivingAt(vec3 surface, vec3 normal) {
   Arriving sum;
   float weights = 0.0;

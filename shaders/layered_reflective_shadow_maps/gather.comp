@@ -1,6 +1,6 @@
 #version 450
-// Cones through opacities in voxels, whose light is in layers of reflective shadow maps: thesis 004, Sec. 3.3, Fig. 44. A dispatch adds some
-// cones of every pixel, lit by some of the lights.
+// Traces cones through opacities in voxels, with light from layers of reflective shadow maps: thesis 004, Sec. 3.3, Fig. 44. A dispatch
+// adds some cones of every pixel, with the light of some of the lights.
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox require MEDIUM == none
 #include "store_layers.glsl"
@@ -9,7 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int coneCount = 6;  // of the lobe
-layout(constant_id = 6) const int pattern = 1;    // pixels in a square of this side have cones of their own
+layout(constant_id = 6) const int pattern = 1;    // cones differ between the pixels of a square of this side
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;

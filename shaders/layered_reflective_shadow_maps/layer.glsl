@@ -1,7 +1,7 @@
 // A layer of a view. C++ side: LayeredReflectiveShadowMap::Layer.
 struct Layer {
-  float middle, halfWidth;  // of its interval of depths, m
+  float middle, halfWidth;  // of its depth interval, m
   int view;
-  int facing;               // the side of a cube that its normals look to, +x -x +y -y +z -z; -1: any
+  int facing;               // cube side to which its normals point, in the order +x -x +y -y +z -z; -1: any
   int slot;
 };

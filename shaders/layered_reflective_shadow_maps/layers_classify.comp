@@ -1,5 +1,5 @@
 #version 450
-// The slot of each texel, and which slots have one.
+// Finds the slot of each texel, and marks the slots that have texels.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "slots.glsl"
 

@@ -1,5 +1,5 @@
 #version 450
-// How many texels of each view lie in each bin of its depths.
+// Counts the texels of each view in each bin of its depths.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "slots.glsl"
 #include "bins.glsl"

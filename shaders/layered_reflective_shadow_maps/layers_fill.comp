@@ -1,12 +1,12 @@
 #version 450
-// The finest level of each layer: what its texels shine, how they lie, and how far off; 0 for the texels of other layers.
+// Fills the finest level of each layer: radiance, normals and depths of its texels; 0 for the texels of other layers.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "layer.glsl"
 #include "slots.glsl"
 
 layout(std430, binding = 7) readonly buffer Layers { Layer layers[]; };
 layout(binding = 3) uniform usampler2DArray slotOfTexel;
-layout(binding = 0) uniform writeonly image2DArray radianceImage;  // half floats or floats, as the next
+layout(binding = 0) uniform writeonly image2DArray radianceImage;  // half floats or floats; normalImage the same
 layout(binding = 1) uniform writeonly image2DArray normalImage;
 layout(binding = 2, rg32f) uniform writeonly image2DArray depthImage;
 
@@ -19,10 +19,10 @@ void main() {
   vec2 depth = vec2(0.0);
   if (texelFetch(slotOfTexel, texel, 0).r == uint(layer.slot)) {
     MapTexel seen = texelOf(texel);
-    // Exitance, the flux of the texel over its area, goes to all sides alike.
+    // The radiance is the same in all directions: exitance, the flux over the area of the texel, divided by pi.
     radiance = vec4(min(texelFetch(rsmFlux, texel, 0).rgb / (kPi * seen.area * unit), most), 1.0);
     normal = vec4(seen.normal, 0.0);
-    // Plain squares lose their variance far from the light.
+    // Depths are relative to the interval: with squares of absolute depths, the variance far from the light is lost in rounding.
     float off = clamp((depthOf(lights[seen.light], layer.view, seen.posWorld) - layer.middle) / layer.halfWidth, -1.0, 1.0);
     depth = vec2(off, off * off);
   }

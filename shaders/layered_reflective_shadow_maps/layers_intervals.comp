@@ -1,5 +1,5 @@
 #version 450
-// Where the intervals of each view begin and end: of equal width, or with as many texels each, as exactly as the bins tell.
+// Bounds of the depth intervals of each view: of equal width, or with equal numbers of texels, to the accuracy of the bins.
 #pragma lumivox axis INTERVALS equal population
 layout(local_size_x = 64) in;
 #include "slots.glsl"
@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #if INTERVALS == INTERVALS_POPULATION
 layout(std430, binding = 1) readonly buffer Bins { uint bins[]; };
 #endif
-layout(std430, binding = 2) writeonly buffer Bounds { float bounds[]; };  // m, depthLayers + 1 of each view
+layout(std430, binding = 2) writeonly buffer Bounds { float bounds[]; };  // m, depthLayers + 1 per view
 
 void main() {
   int view = int(gl_GlobalInvocationID.x);
@@ -20,8 +20,8 @@ void main() {
   uint all = 0u;
   for (int i = 0; i < kBins; ++i) all += bins[view * kBins + i];
   float before = 0.0;
-  int next = 1;  // the bound that is sought
-  // A bin may hold several bounds: every turn ends a bin or a bound.
+  int next = 1;  // the next bound
+  // A bin may contain several bounds: each iteration completes a bin or a bound.
   for (int turn = 0, bin = 0; turn < kBins + depthLayers && bin < kBins && next < depthLayers; ++turn) {
     float own = float(bins[view * kBins + bin]), wanted = float(all) * float(next) / float(depthLayers);
     if (own > 0.0 && before + own >= wanted) {

@@ -1,5 +1,5 @@
 #version 450
-// A coarser level of all layers: means over the finer texels, those that two coarser ones share by their parts.
+// A coarser mip level of all layers: means over the finer texels, weighted by their overlap with the coarse texel.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Mip {

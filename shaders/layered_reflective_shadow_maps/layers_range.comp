@@ -1,5 +1,5 @@
 #version 450
-// The nearest and the farthest depth of each view.
+// Finds the nearest and the farthest depth of each view.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "slots.glsl"
 

@@ -1,5 +1,6 @@
 #version 450
-// A level of opacities from the next finer one, by the cone tracer's rules; the finest is that of the grid, with empty voxels at its high ends.
+// A level of opacities from the next finer level, by the rules of voxel cone tracing. The finest level is the grid, padded with empty
+// voxels at its high ends.
 #pragma lumivox axis LEVEL finest coarser
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 

@@ -1,5 +1,5 @@
-// Which layer a texel of a map belongs to: thesis 004, Sec. 3.3. A slot is a view, an interval of its depths and a class of normals; those that
-// have a texel become layers.
+// The layer of a texel of a reflective shadow map: thesis 004, Sec. 3.3. A slot is a view, one of its depth intervals and a class of
+// normals. Slots with at least one texel become layers.
 #include "common/lights.glsl"
 
 layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
@@ -10,9 +10,9 @@ layout(binding = 2) uniform sampler2DArray rsmFlux;
 layout(std140, binding = 0) uniform Partition {
   int depthLayers;
   int normalLayers;  // 1, or 6: the sides of a cube
-  float unit;        // W/(sr m^2) that the value 1 stands for
+  float unit;        // radiance of the value 1, W/(sr m^2)
   int viewCount;     // of all lights
-  float most;        // that the format of radiance holds
+  float most;        // largest value of the radiance format
 };
 
 struct MapTexel {
@@ -29,12 +29,12 @@ MapTexel texelOf(ivec3 texel) {
   return MapTexel(position.w > 0.0 && normalArea.w > 0.0, position.xyz, normalArea.xyz, normalArea.w, light);
 }
 
-// Along the view, m: from a directional light's origin plane, else from the light.
+// Depth along the view, m: for a directional light from the plane through the origin, otherwise from the light.
 float depthOf(LightSample light, int view, vec3 posWorld) {
   return light.kind == kLightDirectional ? dot(posWorld, light.direction) : (views[view] * vec4(posWorld, 1.0)).w;
 }
 
-// Floats in the order of words.
+// A word that orders like the float.
 uint inOrder(float value) {
   uint bits = floatBitsToUint(value);
   return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;

@@ -1,5 +1,5 @@
-// Which bricks of 4 x 4 x 4 cells hold anything: a list that later passes walk, a work group a brick. What marks them counts, and the
-// count stays on the device: it is the number of groups of the dispatches. The list has no order, and no result depends on it.
+// A list of the occupied bricks of 4 x 4 x 4 cells, which later passes process with one work group per brick. The marking pass counts the
+// bricks; the count is the number of groups of indirect dispatches, without a read-back. The list has no order; no result depends on it.
 #include "common/voxel.glsl"
 
 layout(std430, binding = 4) buffer BrickList {
@@ -16,6 +16,6 @@ void markBrick(ivec3 cell, ivec3 cells) {
     brickPlaces[atomicAdd(brickGroups[0], 1u)] = packVoxel(brick);
 }
 #else
-// The cell of this invocation in a listed brick; it may lie outside of the grid.
+// The cell of this invocation in a listed brick; it may lie outside the grid.
 ivec3 listedCell() { return 4 * unpackVoxel(brickPlaces[gl_WorkGroupID.x]) + ivec3(gl_LocalInvocationID); }
 #endif

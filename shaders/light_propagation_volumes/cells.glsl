@@ -1,8 +1,8 @@
 // Geometry of a cell and its neighbours (Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis 004 Listing 4.32), in cells.
 #include "common/spherical_harmonics.glsl"
 
-// Solid angles of the faces of a neighbour's cube as seen from a cell's centre, sr: the far one, 4 atan(1 / (3 sqrt 11)), and each of the
-// four at the side, so that all five make up a sixth of the sphere.
+// Solid angles of the faces of a neighbour's cube as seen from a cell's centre, sr: the far face, 4 atan(1 / (3 sqrt 11)), and each of the
+// four side faces, so that the five sum to a sixth of the sphere.
 const float kFarFace = 0.40066968;
 const float kSideFace = (2.0 / 3.0 * kPi - kFarFace) / 4.0;
 // The centre of a side face lies in the direction (1, 1/2, 0) / |...|.
@@ -19,5 +19,5 @@ float fluxAcross(vec4 coefficients, vec3 normal) {
   return kCrossing0 * coefficients.x + kCrossing1 * dot(coefficients.yzw, normal.yzx);
 }
 
-// Mean projected area of a cell over its squared size, a quarter of its surface (Cauchy).
+// Mean projected area of a cell over its squared size: a quarter of its surface area (Cauchy).
 const float kMeanProjection = 1.5;

@@ -1,6 +1,6 @@
 #version 450
-// Occlusion: which part of each face between two cells is closed by surfaces.
-// Deviates from Kaplanyan & Dachsbacher 2010, Sec. 4.2 and thesis 004 Listing 4.33, where a cosine lobe around a normal blocks: each
+// Occlusion: the parts of each face between two cells that surfaces cover.
+// Deviates from Kaplanyan & Dachsbacher 2010, Sec. 4.2 and thesis 004 Listing 4.33, where a cosine lobe around a normal occludes: here each
 // surface is moved to the nearest plane of faces, and its projection covers some of the 4 x 4 parts of a face. Parts are combined by OR,
 // so that overlapping triangles do not count twice and the order does not matter.
 #include "parts.glsl"
@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  vec3 listLow;       // m, of the grid of the fragments
+  vec3 listLow;       // low corner of the grid of the fragments, m
   float listVoxel;    // m
 };
 #include "cell_grid.glsl"
@@ -41,7 +41,8 @@ void main() {
   uint allowed = allowedParts(unpackHalf2x16(fragment.albedoBCoverage).y);
 
   for (int axis = 0; axis < 3; ++axis) {
-    // The fragment covers one column of its list along the dominant axis; seen along another axis it is as high as the plane is steep.
+    // The fragment covers one column of its grid along the dominant axis. Projected along another axis,
+    // its height is the slope of the surface.
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     vec2 size = vec2(listVoxel / cellSize);
     if (u == dominant) size.x *= normal[axis] / normal[dominant];

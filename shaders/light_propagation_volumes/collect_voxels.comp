@@ -1,6 +1,6 @@
 #version 450
-// Voxels of the cells: surfaces, both sides of each, in the cells in front of them. STEP weigh: how much of each there is, the
-// denominators of the means; STEP add: the means, the covered parts and the winner of the contrast.
+// Collects both sides of the surfaces in the voxels of the cells in front of them. STEP weigh: the weights, which are the denominators of
+// the means; STEP add: the means, the covered parts and the albedo with the largest contrast.
 #pragma lumivox axis STEP weigh add
 #include "lit_voxel.glsl"
 #include "beside_walls.glsl"
@@ -13,14 +13,14 @@ layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  vec3 listLow;      // m, of the grid of the fragments
+  vec3 listLow;      // low corner of the grid of the fragments, m
   float listVoxel;   // m
   int twoSided;
 };
 #include "cell_grid.glsl"
 layout(binding = 5) uniform sampler3D occluded;
 
-// Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
+// Listing 4.27: the contrast of a colour in 7 bits, then the colour in 8 bits per channel.
 uint packWinner(vec3 albedo) {
   uvec3 colour = uvec3(clamp(albedo, 0.0, 1.0) * 255.0 + 0.5);
   return 1u << 31 | uint(contrastOf(albedo) * 127.0) << 24 | colour.r << 16 | colour.g << 8 | colour.b;
@@ -47,7 +47,7 @@ void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
 #endif
 }
 
-// Whether a surface with its middle in the cell `home` ends at a wall before it comes to a column along the axis.
+// Whether a surface with its centre in the cell `home` ends at a wall before it reaches a column along the axis.
 bool endsBefore(ivec3 home, int axis, int column) {
   if (column == home[axis]) return false;
   ivec3 face = home;
@@ -77,8 +77,8 @@ void main() {
         ivec3 cell = home;
         cell[u] = cellU;
         cell[v] = cellV;
-        // Fragments before the true place of a moved wall come before it. Those beyond do not exist: a fragment is as large as its voxel,
-        // wherever its surface ends.
+        // Parts in front of the true position of a moved wall belong to the cell in front of the wall. Parts beyond the wall do not exist:
+        // a fragment is as large as its voxel, even if its surface ends earlier.
         vec3 middle = position;
         middle[u] = 0.5 * float(max(first.x, kParts * cellU) + min(last.x, kParts * cellU + kParts - 1) + 1) / float(kParts);
         middle[v] = 0.5 * float(max(first.y, kParts * cellV) + min(last.y, kParts * cellV + kParts - 1) + 1) / float(kParts);

@@ -1,8 +1,8 @@
 #version 450
-// Where two surfaces meet, each ends at the true place of the other, which was moved to a plane of faces up to half a cell away: a slit
-// would stay open along every inner edge of a closed room. A surface that comes past the middle of a cell's face goes on to the surface
-// that closes the cell at that side. Done twice, so that corners of three surfaces are closed too. Only surfaces that mostly face their
-// faces: the steps of one surface at a slant are no corners.
+// Closes the slits where two surfaces meet: each ends at the true position of the other, which was moved to a plane of faces up to half a
+// cell away, so that a slit would stay open along every inner edge of a closed room. A surface that reaches past the middle of a cell's
+// face is extended to the surface that closes the cell at that side. The pass runs twice, so that corners of three surfaces are closed too.
+// Only surfaces that mostly face the axis of their faces count: the steps of one slanted surface are no corners.
 #include "parts.glsl"
 #include "bricks.glsl"
 
@@ -15,7 +15,7 @@ layout(binding = 3, r32ui) uniform writeonly uimage3D filledX;
 layout(binding = 4, r32ui) uniform writeonly uimage3D filledY;
 layout(binding = 5, r32ui) uniform writeonly uimage3D filledZ;
 
-// 4 x 4 parts, u along the next axis, v along the one after it. Nothing is closed outside of the grid.
+// The 4 x 4 parts of a face, u along the next axis, v along the axis after it. Outside the grid no part is covered.
 uint partsOf(int axis, ivec3 face) {
   if (any(lessThan(face, ivec3(0))) || any(greaterThanEqual(face, imageSize(partsX)))) return 0u;
   return axis == 0 ? imageLoad(partsX, face).r : axis == 1 ? imageLoad(partsY, face).r : imageLoad(partsZ, face).r;
@@ -36,10 +36,10 @@ uint filled(int axis, ivec3 face) {
       lower[axis] -= 1;
       uint ofUpper = partsOf(across, upper), ofLower = partsOf(across, lower);
       if (((ofUpper | ofLower) & kFacing) == 0u) continue;
-      int inner = side == 1 ? 1 : 2, outer = side == 1 ? 2 : 0;  // the part before the middle, the first of the two behind it
+      int inner = side == 1 ? 1 : 2, outer = side == 1 ? 2 : 0;  // the part before the middle; the first of the two parts beyond it
       for (int along = 0; along < 4; ++along) {
         bool reaches = lateral == 1 ? has(parts, inner, along) : has(parts, along, inner);
-        // They too end at this surface, but not before the middle of their cell.
+        // The other surfaces end at this surface too, but not before the middle of their cell.
         bool meets = lateral == 1 ? has(ofLower, along, 1) || has(ofUpper, along, 2) : has(ofLower, 1, along) || has(ofUpper, 2, along);
         if (reaches && meets)
           result |= lateral == 1 ? bitAt(outer, along) | bitAt(outer + 1, along) : bitAt(along, outer) | bitAt(along, outer + 1);

@@ -1,25 +1,25 @@
 #version 450
-// Indirect diffuse light at the visible surfaces (thesis 004 Sec. 4.3.5, Listings 4.35 and 4.36). One dispatch a grid, the coarsest
-// first; each finer one is blended over it.
+// Indirect diffuse light at the visible surfaces (thesis 004 Sec. 4.3.5, Listings 4.35 and 4.36). One dispatch per grid, the coarsest
+// first; each finer grid is blended over the coarser ones.
 #include "cells.glsl"
 #include "beside_walls.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const int filtered = 0;      // 1: read as Listing 4.35 does
-layout(constant_id = 1) const int closure = 1;       // 0: what two bands make negative is cut off
+layout(constant_id = 0) const int filtered = 0;        // 1: filtered reads, as in Listing 4.35
+layout(constant_id = 1) const int closure = 1;         // 0: negative values of two bands are clamped to 0
 layout(constant_id = 2) const int ownLobe = 0;       // 1: lobe and unit of Listing 4.35
 layout(constant_id = 3) const int radialBlend = 0;   // 1: blended as in Listing 4.36
 
 #include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
   float blend;         // width of the seam, cells
-  float offset;        // of the lookup along the normal, cells
+  float offset;        // offset of the lookup along the normal, cells
   float exponent;      // of the radiance
   int first, last;     // 1 for the first and the last dispatch
-  vec3 eye;            // m, around which the grids lie in Listing 4.36
-  float innerReach;    // m from the eye up to which this grid alone counts, there
-  float outerReach;    // m from which on only the coarser one does
+  vec3 eye;            // m, centre of the grids in Listing 4.36
+  float innerReach;    // radialBlend: distance from the eye up to which only this grid counts, m
+  float outerReach;    // radialBlend: distance from which on only the coarser grid counts, m
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -32,14 +32,14 @@ layout(binding = 8) uniform sampler3D occluded;
 layout(binding = 0, rgba32f) uniform image2D diffuseImage;
 layout(binding = 1, rgba32f) uniform image2D clippedImage;
 
-// A lookup leaves its first cell sideways by less than half a cell, so that this cell always counts.
+// Limits, in cells, how far a lookup leaves its first cell sideways: less than half a cell, so that the first cell always counts.
 const float kReach = 0.49;
-// W/(sr m^2): what an exponent makes of bright light stays finite.
+// W/(sr m^2): limit that keeps the power of a bright radiance finite.
 const float kMostRadiance = 1e30;
 
-// How far the eight cells from `low` on are open from `base`, one of them: the narrowest face of the widest way within the eight, where a
-// face that is half open counts as open. The same cells are open from each of them that is open itself, so that nothing jumps where
-// a surface goes on from one cell into the next. x is the lowest bit of a cell's number.
+// How open the eight cells from `low` on are, seen from `base`, one of them: the narrowest face on the widest path within the eight; a face
+// that is at least half open counts as fully open. All cells that are open from each other see the same cells as open, so that there is no
+// jump where a surface continues from one cell into the next. x is the lowest bit of a cell's number.
 float[8] openWays(ivec3 low, ivec3 base) {
   float open[24];
   for (int corner = 0; corner < 8; ++corner) {
@@ -64,34 +64,34 @@ float[8] openWays(ivec3 low, ivec3 base) {
   return reached;
 }
 
-// Light of intensity c . Y in a cell is a radiance: the cell shows the mean projected area 3/2 h^2 (Cauchy: a quarter of its surface). The
-// irradiance of a surface is its integral with the cosine: from both sides alike `mean`, and `net` more on the one than on the other.
-// Two bands can make mean + net negative. Deviates: with the closure, sqrt(mean^2 + net^2) takes the place of the mean, the least
-// smooth function that keeps the difference of both sides exactly and neither of them negative.
+// Light of intensity c . Y in a cell is converted to a radiance by the mean projected area of the cell, 3/2 h^2 (Cauchy: a quarter of its
+// surface). The irradiance of a surface is the integral of this radiance with the cosine: `mean`, equal on both sides, plus or minus `net`.
+// With two bands, mean + net can be negative. Deviates: with the closure, sqrt(mean^2 + net^2) replaces the mean. It is the smallest smooth
+// function that keeps the difference between the sides exact and both sides non-negative.
 struct Irradiance {
   vec3 value;    // W/m^2
-  vec3 clipped;  // what was negative with two bands, as a positive value
+  vec3 clipped;  // the negative part with two bands, as a positive value
 };
 Irradiance irradianceOf(vec4 redLight, vec4 greenLight, vec4 blueLight, vec3 normal) {
-  // As published: the lobe around the normal itself, so that light counts that goes away from the surface, and a face of a cell, h^2, in
-  // the place of its mean projected area.
+  // As published: the lobe around the normal itself, so that light that moves away from the surface counts; and the area of a cell's face,
+  // h^2, instead of its mean projected area.
   vec4 lobe = ownLobe != 0 ? shClampedCosine(normal) / (cellSize * cellSize)
                            : shClampedCosine(-normal) / (kMeanProjection * cellSize * cellSize);
   vec3 mean = lobe.x * vec3(redLight.x, greenLight.x, blueLight.x);
   vec3 net = vec3(dot(redLight.yzw, lobe.yzw), dot(greenLight.yzw, lobe.yzw), dot(blueLight.yzw, lobe.yzw));
   vec3 clipped = max(-(mean + net), 0.0);
-  // Squares of shares of the larger one: those of light that was amplified would not be finite.
+  // Squares relative to the larger value: squares of amplified light could overflow.
   vec3 larger = max(max(abs(mean), abs(net)), vec3(1e-30));
   vec3 both = larger * sqrt((mean / larger) * (mean / larger) + (net / larger) * (net / larger));
   return Irradiance(closure != 0 ? max(both + net, 0.0) : mean + net, clipped);
 }
 
 Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
-  // The surface lies on the nearest plane of faces, as it does for the light; the cell in front of it is where the ways begin.
+  // The surface is moved to the nearest plane of faces, as it is for the light. Paths begin in the cell in front of it.
   int dominant = dominantAxis(geometricNormal);
   int up = geometricNormal[dominant] >= 0.0 ? 1 : -1;
   ivec3 base = clamp(cellBeside(position, geometricNormal), ivec3(0), resolution - 1);
-  // A lookup one cell away along the dominant axis stays the same when the plane jumps; never behind the first centre.
+  // A lookup one cell away along the dominant axis does not change when the plane jumps; it is never behind the first cell's centre.
   vec3 away = geometricNormal * (offset / abs(geometricNormal[dominant]));
   vec3 lookup = clamp(position + clamp(away, vec3(-0.5), vec3(0.5)), vec3(base) - kReach, vec3(base) + 1.0 + kReach);
   float centre = float(base[dominant]) + 0.5;
@@ -103,8 +103,8 @@ Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
   float reached[8] = openWays(low, base);
   vec4 redSum = vec4(0.0), greenSum = vec4(0.0), blueSum = vec4(0.0);
   float weights = 0.0;
-  // Between surfaces nearer to each other than a cell the first cell may be closed all around. No light comes there: then all cells with light
-  // count, whatever lies between.
+  // Between surfaces less than a cell apart, the first cell may be closed on all sides and without light. Then all cells with light count,
+  // whatever surfaces lie between.
   for (int attempt = 0; attempt < 2 && redSum.x + greenSum.x + blueSum.x <= 0.0; ++attempt) {
     redSum = greenSum = blueSum = vec4(0.0);
     weights = 0.0;
@@ -126,20 +126,20 @@ Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
   return irradianceOf(redSum / weights, greenSum / weights, blueSum / weights, normal);
 }
 
-// Listing 4.35: filtered at the surface, whatever lies between; half a cell too low along z.
+// Listing 4.35: filtered at the surface, regardless of surfaces between; half a cell too low along z, as printed.
 Irradiance filteredIrradiance(vec3 position, vec3 normal) {
   vec3 texcoord = (position - vec3(0.0, 0.0, 0.5)) / vec3(resolution);
   return irradianceOf(texture(red, texcoord), texture(green, texcoord), texture(blue, texcoord), normal);
 }
 
-// How much of this grid counts against the coarser one.
+// Weight of this grid against the coarser grid.
 float shareOfGrid(vec3 position, vec3 posWorld) {
   if (radialBlend != 0) {
-    // Listing 4.36: by the distance to the eye alone; the coarsest goes on for ever.
+    // Listing 4.36: by the distance to the eye only; the coarsest grid has no end.
     if (first != 0) return 1.0;
     return clamp((outerReach - distance(posWorld, eye)) / (outerReach - innerReach), 0.0, 1.0);
   }
-  // Cells to the border; the coarsest grid ends at it.
+  // Distance to the border in cells; the coarsest grid fades out at its border.
   vec3 inside = min(position, vec3(resolution) - position);
   float toBorder = min(inside.x, min(inside.y, inside.z));
   return first != 0 ? clamp(toBorder, 0.0, 1.0) : clamp((toBorder - 1.0) / blend, 0.0, 1.0);

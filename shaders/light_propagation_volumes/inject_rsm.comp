@@ -1,6 +1,6 @@
 #version 450
-// Kaplanyan & Dachsbacher 2010, Sec. 4.1: every texel of the reflective shadow map is a virtual point light. STEP weigh: how many there
-// are in a cell and how bright the brightest is; STEP add: their sums.
+// Kaplanyan & Dachsbacher 2010, Sec. 4.1: every texel of the reflective shadow map is a virtual point light. STEP weigh: the number of
+// lights in a cell and the largest flux; STEP add: their sums.
 #pragma lumivox axis STEP weigh add
 #include "virtual_lights.glsl"
 #include "beside_walls.glsl"
@@ -27,7 +27,7 @@ void main() {
   int place = sumsOf(cell, resolution);
   if (place < 0) return;
 #if STEP == STEP_WEIGH
-  // The order of the bits of numbers from 0 on is that of the numbers.
+  // The bits of non-negative floats order like the floats.
   atomicMax(sums[place].brightest, floatBitsToUint(largestOf(flux)));
   if (atomicAdd(sums[place].lights, 1u) == 0u) markBrick(cell, resolution);
 #else

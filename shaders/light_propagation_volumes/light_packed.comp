@@ -1,7 +1,8 @@
 #version 450
-// Illuminated voxels become virtual point lights as printed (thesis 004 Listings 4.30 and 4.31): each is lit at its centre, by each light
-// on the normal that is closest to it, and shines as a clamped cosine around that normal. The light of all lights adds up.
-// A printed coefficient is one of radiance: times the face of a cell it is that of the intensity of a surface that fills it, W/sr.
+// Illuminated voxels become virtual point lights as printed (thesis 004 Listings 4.30 and 4.31): each voxel is lit at its centre, by each
+// light on the normal closest to the light's direction, and emits as a clamped cosine around that normal. The light of all lights is
+// summed. A printed coefficient is one of radiance: times the area of a cell's face, it is the
+// intensity of a surface that fills the face, W/sr.
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
 #include "common/spherical_harmonics.glsl"
@@ -36,7 +37,7 @@ void main() {
       float cosSurface = dot(normal, toLight);
       if (!(cosSurface > 0.0)) continue;
       vec3 radiance = unpackAlbedo(albedo) * perpendicular * (cosSurface * visibility(light, centre, normal, toLight));
-      // Deviates: bounded, as in light_voxels.comp; the print has no light within the scene.
+      // Deviates: limited, as in light_voxels.comp; the thesis has no light inside the scene.
       vec3 intensity = min(radiance * (cellSize * cellSize), largestFlux / kPi);
       for (int i = 0; i < 3; ++i) channels[i] += shClampedCosine(normal) * intensity[i];
     }

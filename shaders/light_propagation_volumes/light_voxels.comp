@@ -1,5 +1,5 @@
 #version 450
-// Doghramachi 2013; thesis 004 Sec. 4.3.2, Listing 4.30: illuminated voxels become virtual point lights. All lights at once.
+// Doghramachi 2013; thesis 004 Sec. 4.3.2, Listing 4.30: illuminated voxels become virtual point lights, for all lights at once.
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
 #include "lit_voxel.glsl"
@@ -13,11 +13,11 @@ layout(std140, binding = 0) uniform Parameters {
   float largestFlux;  // W
   int lightCount;
   int contrastAlbedo;  // 1: the most contrasting albedo, as published; 0: the mean
-  int closestNormal;   // 1: only the normal nearest to the direction of the light, as published; 0: all
+  int closestNormal;   // 1: a light illuminates only the normal closest to its direction, as published; 0: all
   int wholeFaces;      // 1: a surface fills its voxel, as published; 0: the parts that it covers
 };
 
-// Irradiance of one light at a group's surface.
+// Irradiance by one light at the surface of a group, W/m^2.
 vec3 irradianceFrom(LightSample light, vec3 posWorld, vec3 normal) {
   vec3 toLight;
   vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
@@ -43,7 +43,7 @@ void main() {
     vec3 mean = signedMeanOf(group.normal[0], group.normal[1], group.normal[2]);
     float size = length(mean);
     normals[i] = size > 0.0 ? mean / size : vec3(0.0);
-    // Parts are counted on the plane of faces: the surface is longer by the slant.
+    // Parts are counted on the plane of faces; the area of the surface is larger by its slant.
     vec3 slant = abs(normals[i]);
     uint parts = size > 0.0 ? (wholeFaces != 0 ? 16u : uint(bitCount(group.parts))) : 0u;
     areas[i] = parts == 0u ? 0.0 : float(parts) / 16.0 * cellSize * cellSize / max(slant.x, max(slant.y, slant.z));
@@ -65,7 +65,7 @@ void main() {
     for (int i = 0; i < kGroups; ++i)
       if (areas[i] > 0.0 && (closestNormal == 0 || i == closest)) irradiance[i] += irradianceFrom(light, positions[i], normals[i]);
   }
-  // No cell reflects more than all lights emit: near a light the irradiance of one point says little about its cell.
+  // No cell reflects more than all lights emit: near a light, the irradiance at one point is no measure for its cell.
   vec3 fluxes[4];
   float brightest = 0.0;
   for (int i = 0; i < kGroups; ++i) {

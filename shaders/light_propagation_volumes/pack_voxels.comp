@@ -1,13 +1,13 @@
 #version 450
-// Surfaces into voxels as printed (thesis 004 Listings 4.27 to 4.29): the front of each in the voxel that it lies in, and the largest word
-// wins.
+// Stores surfaces in voxels as printed (thesis 004 Listings 4.27 to 4.29): the front of each surface, in the voxel that contains it; the
+// largest word wins.
 #include "packed_voxels.glsl"
 
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  vec3 listLow;      // m, of the grid of the fragments
+  vec3 listLow;      // low corner of the grid of the fragments, m
   float listVoxel;   // m
 };
 #include "cell_grid.glsl"

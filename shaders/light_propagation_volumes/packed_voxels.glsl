@@ -1,7 +1,7 @@
-// Voxels as printed (thesis 004 Listings 4.26 to 4.30): what wins an atomic maximum, five words each. The first is the albedo over pi in
-// three bytes, above it the contrast in seven bits, and the highest bit tells that there is a surface. The others, one for each face of a
-// tetrahedron, are a normal in nine bits an axis, the higher ones of x, and above it its closeness to the face in five bits; 0: none.
-// All numbers are cut off, as printed, so that a decoded normal is a little shorter than 1.
+// Voxels as printed (thesis 004 Listings 4.26 to 4.30): five words each, every one the winner of an atomic maximum. The first word has the
+// albedo over pi in three bytes, the contrast in seven bits above it, and the highest bit set if there is a surface. The other words, one
+// per face of a tetrahedron, have a normal in nine bits per axis, x highest, and above it the closeness to the face in five bits; 0: no
+// normal. All numbers are truncated, as printed, so that a decoded normal is a little shorter than 1.
 #include "common/constants.glsl"
 #include "tetrahedron.glsl"
 
@@ -29,8 +29,8 @@ uint packDirection(vec3 normal, int face) {
 }
 vec3 unpackDirection(uint word) { return vec3(unpackAxis(word >> 18), unpackAxis(word >> 9), unpackAxis(word)); }
 
-// The closest of a voxel's four normals to a direction. A face without a normal takes part as a vector of length 0: where all others look
-// away, it is the closest.
+// The closest of a voxel's four normals to a direction. A face without a normal takes part as a vector of length 0, and is the closest if
+// all others face away.
 vec3 closestNormal(uvec4 directions, vec3 direction) {
   vec3 closest = unpackDirection(directions[0]);
   for (int i = 1; i < 4; ++i) {

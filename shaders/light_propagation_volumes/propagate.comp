@@ -1,7 +1,7 @@
 #version 450
 // One iteration of the propagation (Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis 004 Sec. 4.3.3), gathered from the six neighbours.
-// A work group is a brick of 4 x 4 x 4 cells, one to an invocation. The stamp of a brick tells in which iteration light was last written to it: bricks
-// without light in them and in their neighbours are left out. Light after n iterations has the stamp n + 1.
+// A work group is a brick of 4 x 4 x 4 cells, one cell per invocation. The stamp of a brick is the iteration in which light was last
+// written to it: bricks without light in themselves and their neighbours are skipped. Light after n iterations has the stamp n + 1.
 #include "propagation.glsl"
 #include "crossing.glsl"
 
@@ -16,7 +16,8 @@ bool lit(ivec3 brick) {
   return texelFetch(stamps, brick, 0).r == uint(stamp);
 }
 
-// Sum over the six neighbours of crossFace(): sums and differences of the two along each axis, so that each constant is used once.
+// Sum of crossFace() over the six neighbours, by sums and differences of the two neighbours along each
+// axis, so that each constant is used once.
 vec4 fromNeighbours(sampler3D light, ivec3 cell, ivec3 below, ivec3 above, vec3 openBelow, vec3 openAbove, vec3 turnBelow, vec3 turnAbove) {
   vec4 xBelow = openBelow.x * texelFetch(light, ivec3(below.x, cell.yz), 0);
   vec4 xAbove = openAbove.x * texelFetch(light, ivec3(above.x, cell.yz), 0);
@@ -39,13 +40,13 @@ vec4 fromNeighbours(sampler3D light, ivec3 cell, ivec3 below, ivec3 above, vec3 
 }
 
 void main() {
-  // All invocations of a group take the same way through this: what they read of the stamps is not written here.
+  // This branch is uniform over a group: the stamps that are read are not written in this pass.
   ivec3 brick = ivec3(gl_WorkGroupID), cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, resolution))) return;
   bool reached = lit(brick) || lit(brick - ivec3(1, 0, 0)) || lit(brick + ivec3(1, 0, 0)) || lit(brick - ivec3(0, 1, 0)) ||
                 lit(brick + ivec3(0, 1, 0)) || lit(brick - ivec3(0, 0, 1)) || lit(brick + ivec3(0, 0, 1));
   if (!reached) {
-    // Light of two iterations ago may still lie here.
+    // The target may still hold light of two iterations ago.
     if (imageLoad(stampsNext, brick).r == uint(stamp - 1)) {
       imageStore(redNext, cell, vec4(0.0));
       imageStore(greenNext, cell, vec4(0.0));
@@ -60,7 +61,7 @@ void main() {
   vec3 openAbove = vec3(openShare(texelFetch(occluded, ivec3(above.x, cell.yz), 0).x),
                         openShare(texelFetch(occluded, ivec3(cell.x, above.y, cell.z), 0).y),
                         openShare(texelFetch(occluded, ivec3(cell.xy, above.z), 0).z));
-  // Beyond the border there is nothing, or the image of this cell in it: the same light, turned round.
+  // Beyond the border there is no light, or the mirror image of this cell: the same light, reversed along the axis.
   vec3 turnBelow = vec3(1.0), turnAbove = vec3(1.0);
   bvec3 firstCell = equal(cell, ivec3(0)), lastCell = equal(cell, end);
   if (any(firstCell) || any(lastCell)) {
@@ -73,6 +74,6 @@ void main() {
   vec4 greenSum = amplifier * fromNeighbours(green, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
   vec4 blueSum = amplifier * fromNeighbours(blue, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
   store(cell, redSum, greenSum, blueSum);
-  // The same word from all that have light.
+  // All invocations with light write the same word.
   if (any(notEqual(abs(redSum) + abs(greenSum) + abs(blueSum), vec4(0.0)))) imageStore(stampsNext, brick, uvec4(stamp + 1));
 }

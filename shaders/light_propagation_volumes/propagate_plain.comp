@@ -1,7 +1,7 @@
 #version 450
-// The same iteration in the structure of thesis 004 Listing 4.32: every face of every neighbour in turn, its direction, solid angle and
-// harmonics worked out where they are needed, and every cell visited. The measure of the folded one, and the published transfer.
-// OCCLUSION normals: the light of a cell is held back by the lobe of the normal in it that is closest to its way (Listing 4.33).
+// The same iteration in the structure of thesis 004 Listing 4.32: it loops over every face of every neighbour, computes direction, solid
+// angle and harmonics on the fly, and visits every cell. It is the reference for propagate.comp, and has the published transfer.
+// OCCLUSION normals: the lobe of the normal in a cell that is closest to the light's direction occludes the cell's light (Listing 4.33).
 #pragma lumivox axis OCCLUSION faces normals
 #include "propagation.glsl"
 #if OCCLUSION == OCCLUSION_NORMALS
@@ -11,16 +11,16 @@ layout(std430, binding = 3) readonly buffer Words { PackedVoxel words[]; };
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
-// 1: the transfer of Listing 4.32. The solid angles are divided by 4 pi (printed: 0.0318842778 and 0.0336955972) and the flux is added
-// as a clamped cosine that is not divided by pi: a quarter of what left arrives. Negative flux is dropped, and the light of a cell stays
-// in it too, so that the sum grows to 5/4 in every iteration, and by what was dropped.
+// 1: the transfer of Listing 4.32. The solid angles are divided by 4 pi (printed: 0.0318842778 and 0.0336955972), and the flux is added as
+// a clamped cosine that is not divided by pi: a quarter of the light that leaves arrives. Negative flux is dropped, and a cell also keeps
+// its light, so that every iteration multiplies the sum by 5/4, and adds the dropped flux.
 layout(constant_id = 1) const int publishedTransfer = 0;
 
 const ivec3 kOffsets[6] =
     ivec3[6](ivec3(1, 0, 0), ivec3(-1, 0, 0), ivec3(0, 1, 0), ivec3(0, -1, 0), ivec3(0, 0, 1), ivec3(0, 0, -1));
 
 #if OCCLUSION == OCCLUSION_NORMALS
-// Coefficients of what a cell holds back of the light that leaves it in a direction; nothing where it has no surface.
+// Coefficients of the occlusion of light that leaves a cell in a direction; 0 if the cell has no surface.
 vec4 occlusionOf(ivec3 cell, vec3 direction) {
   int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
   if (words[voxel].albedo == 0u) return vec4(0.0);
@@ -49,7 +49,7 @@ void main() {
       vec3 direction = 0.5 * vec3(kOffsets[f]) - vec3(kOffsets[n]);
       float distance = length(direction);
       direction /= distance;
-      float solidAngle = distance < 0.75 ? 0.0 : distance > 1.25 ? kFarFace : kSideFace;  // the shared face is not reached
+      float solidAngle = distance < 0.75 ? 0.0 : distance > 1.25 ? kFarFace : kSideFace;  // the shared face gets no light
       vec4 basis = shBasis(direction);
       vec4 lobe = cosineLobe != 0 ? shClampedCosine(vec3(kOffsets[f])) / kPi : basis;
       if (publishedTransfer != 0) {

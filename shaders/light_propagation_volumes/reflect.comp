@@ -1,8 +1,8 @@
 #version 450
 // The reflection grid (thesis 004 Sec. 4.3.4, Listing 4.34): the light that leaves the surfaces in the voxels of a finer grid. One dispatch
-// a grid of propagated light, the coarsest first.
-// Deviates: Listing 4.34 multiplies the albedo with the mean of the light from all sides. Here a voxel shines with the flux that crosses
-// the face before it outwards, which is what its surface reflects and nothing else.
+// per grid of propagated light, the coarsest first.
+// Deviates: Listing 4.34 multiplies the albedo by the mean of the light from all sides. Here a voxel emits the flux that crosses the face
+// in front of it outwards, which is exactly the light that its surface reflects.
 #include "cells.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
@@ -33,7 +33,7 @@ void main() {
   }
   vec3 radiance = first != 0 ? vec3(0.0) : imageLoad(radianceImage, voxel).rgb;
   vec3 mean = texelFetch(surfaceNormal, voxel, 0).xyz;
-  // One cell before the surface. Where the normals of a voxel disagree, the light of all sides counts.
+  // One cell in front of the surface. If the normals of a voxel disagree, their mean is short, and the light of all sides counts.
   vec3 position = (reflectionLow + (vec3(voxel) + 0.5) * voxelSize - gridLow) / cellSize;
   vec3 inside = min(position, vec3(resolution) - position);
   float toBorder = min(inside.x, min(inside.y, inside.z));

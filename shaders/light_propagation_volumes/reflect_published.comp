@@ -1,8 +1,8 @@
 #version 450
 // The reflection grid as printed (thesis 004 Sec. 4.3.4, Listing 4.34): the albedo times the mean of the light of the finest cells from all
-// sides. The coefficient Y00, of light per face of a cell, times that of a clamped cosine, and the albedo over pi. The lookup lacks half a
-// voxel along z. The prose lets the light fade out with the distance to the middle of the grid; the distance at which it is gone is not printed:
-// half a side, where the grid ends.
+// sides. That is the coefficient Y00 of the light per area of a cell's face, times the coefficient of a clamped cosine, times the albedo
+// over pi. The lookup lacks half a voxel along z. The text lets the light fade out with the distance to the centre of the grid, without the
+// distance at which it is gone: here half a side, where the grid ends.
 #include "common/spherical_harmonics.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
@@ -12,7 +12,7 @@ layout(std140, binding = 0) uniform Parameters {
   float fadeDistance;   // m
   vec3 reflectionLow;   // m
   float voxelSize;      // m
-  vec3 centre;          // m, where nothing has faded: the eye
+  vec3 centre;          // m, where the light does not fade: the eye
 };
 layout(binding = 0) uniform sampler3D red;
 layout(binding = 1) uniform sampler3D green;

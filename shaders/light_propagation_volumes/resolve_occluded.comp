@@ -1,5 +1,5 @@
 #version 450
-// Parts of faces to shares, and how far their surfaces were moved.
+// Converts the parts of faces to occluded shares, and to how far their surfaces were moved.
 #include "parts.glsl"
 #include "bricks.glsl"
 
@@ -11,7 +11,7 @@ layout(binding = 2, r32ui) uniform readonly uimage3D partsZ;
 layout(binding = 3, rgba8) uniform writeonly image3D occluded;
 layout(binding = 4, rgba8) uniform writeonly image3D moved;
 
-// The largest of each kind, in steps rounded up.
+// The largest motion down and up, in steps rounded up.
 float movedByte(uint bits) {
   int down = findMSB(bits >> kMovedDown & kMovedMask) + 1, up = findMSB(bits >> kMovedUp & kMovedMask) + 1;
   return float(down | up << 4) / 255.0;

@@ -1,6 +1,6 @@
 #version 450
-// The light before the first iteration: what was injected, and what comes in across the border, from the next coarser grid or from the
-// environment. Only the sum over all iterations counts, so that all of it may come at once.
+// The light before the first iteration: the injected light, and the light that enters across the border, from the next coarser grid or from
+// the environment. Only the sum over all iterations counts, so that the light across the border may enter all at once.
 #pragma lumivox axis OUTSIDE none grid environment
 #include "cells.glsl"
 
@@ -11,10 +11,10 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 #include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
-  float outsideShare;   // light in a cell of this size over that in one of the outside
-  vec3 cellInOutside;   // size of a cell in texture coordinates of the outside
+  float outsideShare;   // light in a cell of this size over the light in a cell of the outside grid
+  vec3 cellInOutside;   // size of a cell in texture coordinates of the outside grid
   float occlusion;
-  vec3 lowInOutside;    // low corner of the grid there
+  vec3 lowInOutside;    // low corner of the grid in these coordinates
   vec4 environment;     // light in a cell of this size, W/sr
 };
 layout(binding = 0) uniform sampler3D red;

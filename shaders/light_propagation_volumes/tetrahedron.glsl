@@ -1,4 +1,4 @@
-// How voxels group their surfaces (thesis 004 Sec. 4.3.1): normals by the nearest face of a tetrahedron, and albedos by contrast.
+// Criteria by which voxels group their surfaces (thesis 004 Sec. 4.3.1): normals by the nearest face of a tetrahedron, albedos by contrast.
 #ifndef LUMIVOX_TETRAHEDRON
 #define LUMIVOX_TETRAHEDRON
 
@@ -13,7 +13,7 @@ int groupOf(vec3 normal) {
   return best;
 }
 
-// Listing 4.27: contrast of a colour, 0 to 0.59, of its values as displayed. The exponent is not printed: 2.2.
+// Listing 4.27: contrast of a colour, 0 to 0.59, from its display values. The exponent is not printed; here 2.2.
 float contrastOf(vec3 albedo) {
   vec3 displayed = pow(clamp(albedo, 0.0, 1.0), vec3(1.0 / 2.2));
   return length(displayed.rrg - displayed.gbb) / (sqrt(2.0) + displayed.r + displayed.g + displayed.b);

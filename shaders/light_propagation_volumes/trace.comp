@@ -1,8 +1,8 @@
 #version 450
-// Glossy light: one cone a pixel through the reflection grid (thesis 004 Sec. 4.3.5). The march is that of Listing 4.13 as printed: samples of
-// at least two voxels, taken where a step of half their width begins; the opacity's exponent is half the diameter over the first one; what
-// was gathered is multiplied by the opacity anew in each step. Listing 4.37 fades samples by their distance and the result by the surface's
-// distance to the eye.
+// Glossy light: one cone per pixel through the reflection grid (thesis 004 Sec. 4.3.5). The march is that of Listing 4.13 as printed.
+// Samples are at least two voxels wide, and are taken at the beginning of a step of half their width. The opacity's exponent is half the
+// diameter over the first diameter. Each step multiplies the gathered radiance by the opacity again. Listing 4.37 fades samples by their
+// distance, and the result by the surface's distance to the eye.
 #include "common/cones.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -14,10 +14,10 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 gridLow;        // m
   float voxelSize;     // m
   vec3 gridExtent;     // m
-  float reach;         // m that a cone goes
+  float reach;         // length of a cone, m
   vec3 eyeWorld;
-  float fadeDistance;  // m from the eye at which reflections are gone
-  float unit;          // W/(sr m^2) that the value 1 of the grid stands for
+  float fadeDistance;  // distance from the eye at which reflections have faded out, m
+  float unit;          // radiance of the value 1 of the grid, W/(sr m^2)
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -25,7 +25,7 @@ layout(binding = 2) uniform sampler2D gSpecular;
 layout(binding = 3) uniform sampler3D radianceGrid;
 layout(binding = 0, rgba32f) uniform writeonly image2D glossyImage;
 
-// Deviates where `fade` falls: the print lets it grow with the distance, so that near samples count least.
+// Deviates with kFadeFalls: the print lets the factor grow with the distance, so that near samples count least.
 float fadeAt(float distance) {
   float share = clamp(distance / reach, 0.0, 1.0);
   return fade == kFadeGrows ? share : fade == kFadeFalls ? 1.0 - share : 1.0;
@@ -57,7 +57,7 @@ void main() {
     if (any(greaterThan(specular.rgb, vec3(0.0)))) {
       vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
       vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-      // The diameter of a cone over its height is the user's in the print. Here the cone has the solid angle of the lobe, 2 pi / (n + 1).
+      // The print leaves the diameter of a cone over its height to the user. Here the cone has the solid angle of the lobe, 2 pi / (n + 1).
       float ratio = 2.0 * tanOfHalfAngle(cosHalfAngleOfLobe(specular.w));
       float atSurface = fade == kFadeNone ? 1.0 : 1.0 - clamp(distance(position.xyz, eyeWorld) / fadeDistance, 0.0, 1.0);
       glossy = specular.rgb * (max(dot(mirror, normal), 0.0) * atSurface) * traceCone(position.xyz, mirror, ratio);

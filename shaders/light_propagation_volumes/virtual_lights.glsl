@@ -1,15 +1,15 @@
-// Virtual point lights, collected per cell as integers, so that their order does not matter (common/integer_mean.glsl).
+// Virtual point lights, summed per cell as integers, so that their order does not matter (common/integer_mean.glsl).
 #include "common/integer_mean.glsl"
 #include "parts.glsl"
 
 struct VirtualLights {
-  int shares[12];  // for each colour the flux and the sum of flux times normal, as shares of what the lights of the cell can add up to
-  uint brightest;  // the largest flux among them, as the bits of a float
+  int shares[12];  // per channel the flux, and flux times normal, as shares of the largest possible sum in the cell
+  uint brightest;  // the largest flux of a light, as the bits of a float
   uint lights;     // their number
 };
 layout(std430, binding = 2) buffer Sums { VirtualLights sums[]; };
 
-// Where a cell's sums are, or -1 outside the grid.
+// The index of a cell's sums, or -1 outside the grid.
 int sumsOf(ivec3 cell, ivec3 resolution) {
   if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, resolution))) return -1;
   return (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
@@ -17,7 +17,7 @@ int sumsOf(ivec3 cell, ivec3 resolution) {
 
 float largestOf(vec3 flux) { return max(flux.r, max(flux.g, flux.b)); }
 
-// W of the share 1; 0 where nothing shines.
+// Flux of the share 1, W; 0 without lights.
 float fullFlux(int place) { return uintBitsToFloat(sums[place].brightest) * float(sums[place].lights); }
 
 void addVirtualLight(int place, vec3 flux, vec3 normal) {

@@ -1,7 +1,8 @@
 #version 450
 // One bounce of light near each visible surface: Thiedemann, Henrich, Grosch & Mueller 2011, Sec. 5; thesis 004, Sec. 3.2.3 and 4.4.6.
-// Bits say where a ray ends, and a reflective shadow map how bright it is there. A dispatch takes some of the rays of a pixel and adds them
-// to what earlier ones found. Listings 4.45 to 4.49 take one ray a pass, with a buffer of places between it and the light, and blend them.
+// Binary voxels give the hit point of a ray, and a reflective shadow map its radiance. A dispatch traces some of the rays of each pixel and
+// adds them to the sums of earlier dispatches. Deviates: Listings 4.45 to 4.49 trace one ray per pass, store hit points in a buffer before
+// lighting them, and blend the passes.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis RADIANCE none map voxels
 #pragma lumivox axis OCCLUSION 0 1
@@ -22,33 +23,33 @@ const int kRotationHash = 0, kRotationTile = 1, kRotationNone = 2;
 
 layout(constant_id = 2) const int hitPoint = 0;
 layout(constant_id = 3) const int rotation = 0;
-layout(constant_id = 4) const int hammersley = 0;        // 1: that sequence, of the rays of one frame; 0: R2, which goes on and on
-layout(constant_id = 5) const int offsetByDiagonal = 0;  // 1: of the start, as printed; 0: by what a plane can touch
+layout(constant_id = 4) const int hammersley = 0;        // 1: Hammersley points, for the rays of one frame; 0: R2, an infinite sequence
+layout(constant_id = 5) const int offsetByDiagonal = 0;  // unit of `offset`: 1: a voxel's diagonal, as printed; 0: reachOfPlane()
 
 layout(std140, binding = 1) uniform Rays {
   vec3 environment;      // W/(sr m^2)
   float spread;          // largest sine of a ray's angle to the normal, squared
   uvec2 seed;
-  int every;             // one pixel of so many along each axis is gathered
-  int rays;              // of a pixel and frame
-  int firstRay;          // that this dispatch takes, and how many
+  int every;             // every n-th pixel along each axis is gathered
+  int rays;              // per pixel and frame
+  int firstRay;          // first ray of this dispatch; raysAtOnce: its number of rays
   int raysAtOnce;
-  int framesBefore;      // whose rays are in the earlier sums
-  float offset;          // of the start along the normal; see startOf()
-  float start;           // along the ray, voxels
-  float reach;           // of light along the ray, from where `start` is 0, voxels
-  float occlusionReach;  // of occlusion
-  int beyondRadius;      // 1: the environment begins there; 0: behind the grid
+  int framesBefore;      // number of frames in the earlier sums
+  float offset;          // of the ray's origin along the normal; see startOf()
+  float start;           // of the ray's origin along the ray, voxels
+  float reach;           // search distance of light along the ray, measured from start 0, voxels
+  float occlusionReach;  // the same for occlusion
+  int beyondRadius;      // 1: the environment begins at `reach`; 0: behind the grid
   int first;             // 1: no light of this frame has been added yet
   int last;              // 1: the mean of the light is written
-  int addsRest;          // 1: what rays bring beside light of the map is added; 0: another dispatch did so
-  float scale;           // of what arrives
+  int addsRest;          // 1: adds environment, occlusion and fetches; 0: another dispatch added them
+  float scale;           // factor on the arriving light
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
-// Sums over all rays of the frames before and of this one. That of the light has beside it what rounding has lost of it (Kahan 1965), so that
-// frames of few rays and one frame of many are the same, to the bit.
+// Sums over all rays of the earlier frames and this one. The sum of the light has a compensation of its rounding error (Kahan 1965), so
+// that several frames of few rays equal one frame of many rays, to the bit.
 layout(binding = 6) uniform sampler2D earlierLight;
 layout(binding = 11) uniform sampler2D earlierLost;
 layout(binding = 7) uniform sampler2D earlierOpen;
@@ -69,7 +70,7 @@ layout(binding = 10) uniform sampler3D radianceGrid;
 layout(std140, binding = 3) uniform Radiance { float radianceUnit; };
 #endif
 
-// Two words to turn the sequence by, in 2^32 parts. A small texture of random numbers, as printed, is a hash of the place in a tile.
+// Random shift of the sequence, in units of 2^-32. A hash of the position in a tile replaces the printed small texture of random numbers.
 uvec2 turnOf(ivec2 at) {
   const int kTile = 4;
   if (rotation == kRotationNone) return uvec2(0u);
@@ -80,23 +81,23 @@ uvec2 turnOf(ivec2 at) {
 // Ray number i of a pixel: a point of the unit square, uniformly.
 vec2 pointOf(int i, uvec2 turn) {
   if (hammersley != 0) {
-    // (i / n, bits of i mirrored). Every frame turns it elsewhere: it has no further points.
+    // (i / n, reversed bits of i). The sequence has only the points of one frame, so every frame shifts it differently.
     if (framesBefore > 0) turn += hash4(uvec4(turn, uint(framesBefore), seed.x)).xy;
     float along = (float(i) + 0.5) / float(rays);
     return vec2(fract(along + unitInterval(turn).x), unitInterval(uvec2(bitfieldReverse(uint(i)) + turn.y)).x);
   }
-  // A sequence that frames that accumulate go on with.
+  // With accumulation, each frame continues the sequence.
   return unitInterval(wordsOfR2(uint(framesBefore) * uint(rays) + uint(i), turn));
 }
 
-// Where the rays of a surface begin, in voxels.
+// The origin of a surface's rays, in voxels.
 vec3 startOf(vec3 posWorld, vec3 geometricNormal) {
   float unit = offsetByDiagonal != 0 ? sqrt(3.0) : reachOfPlane(geometricNormal);
   return (posWorld - gridLow) / voxelSize + geometricNormal * (offset * unit);
 }
 
 #if RADIANCE != RADIANCE_NONE
-vec3 receiver;  // whose rays these are, posWorld
+vec3 receiver;  // posWorld of the surface that gathers
 
 vec3 hitPointOf(BitHit hit) {
   vec3 centre = vec3(hit.voxel) + 0.5, entry = bitOrigin + hit.t * bitDirection;
@@ -180,7 +181,7 @@ void main() {
 #endif
 #if OCCLUSION
   if (addsRest != 0) {
-    float open = sums.open;  // whole numbers: nothing is lost
+    float open = sums.open;  // integers: exact
     if (firstRay > 0) open += imageLoad(openSum, at).x;
     else if (framesBefore > 0) open += texelFetch(earlierOpen, at, 0).x;
     imageStore(openSum, at, vec4(open));

@@ -1,12 +1,12 @@
 #version 450
-// One ray a pixel through the bits, for tests and measurements.
+// One ray per pixel through the bits, for tests and measurements.
 #include "common/bit_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform sampler2D origins;     // xyz posWorld, w reach, m; below 0: no ray
 layout(binding = 1) uniform sampler2D directions;  // xyz unit
-layout(binding = 0, rgba32f) uniform writeonly image2D voxelImage;   // xyz the voxel, -1 where there is none; w way to it, m
+layout(binding = 0, rgba32f) uniform writeonly image2D voxelImage;   // xyz the voxel, -1 if there is none; w distance to it, m
 layout(binding = 1, rgba32f) uniform writeonly image2D fetchImage;   // r texels of the stacks that were read
 
 void main() {

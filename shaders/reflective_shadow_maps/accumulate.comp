@@ -1,6 +1,6 @@
 #version 450
-// A level of the tree of sums from the one below it. No sum is longer than 16 addends, so that little is lost where dim lights stand
-// beside bright ones, and all sums of a level are made at once.
+// A level of the tree of sums from the level below it. No sum has more than 16 addends, so that rounding loses little of dim lights beside
+// bright ones, and all sums of a level are computed in parallel.
 #pragma lumivox axis OF texels sums
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

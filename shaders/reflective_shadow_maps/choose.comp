@@ -1,6 +1,6 @@
 #version 450
-// Texels chosen in proportion to the luminance of their flux: sample j takes the texel that holds the share (j + 1/2) / n of all flux.
-// Dividing by the probability makes the sum over the samples an estimate of the sum over all texels, without bias in the limit.
+// Chooses texels in proportion to the luminance of their flux: sample j takes the texel at the share (j + 1/2) / n of the cumulative flux.
+// Division by the probability makes the sum over the samples an estimate of the sum over all texels, without bias in the limit.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "sum_tree.glsl"
@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Parameters {
   uint texels;
-  uint levels;   // of sums
+  uint levels;   // levels of sums
   uint samples;
   int area;      // of lights: taken.glsl
   uint width, height, rows, together, ways;  // TexelOrder
@@ -24,8 +24,7 @@ void main() {
   if (total > 0.0) {
     float rest = total * ((float(index) + 0.5) / float(samples)), weight = 0.0;
     uint entry = 0u, firstOfLevel = 0u;
-    // Down the tree: among the children the one in which the rest of the share ends. Where rounding leaves some of it over, the last that
-    // has any flux.
+    // Descend the tree: take the child in which the rest of the share ends; if rounding leaves a remainder, the last child with flux.
     for (uint level = levels; level > 0u; --level) {
       firstOfLevel += levelSize(texels, level);
       uint child = entry * kFan, end = min(child + kFan, levelSize(texels, level - 1u));
@@ -48,7 +47,7 @@ void main() {
       }
       rest += weight;
     }
-    // Each sample stands for total / samples of the flux, and for as much more area as it stands for more texels.
+    // Each sample represents total / samples of the flux; its area grows with the number of texels that it represents.
     float copies = weight > 0.0 ? total / (float(samples) * weight) : 0.0;
     light = texelLight(texelOf(entry, order), copies, area);
   }

@@ -1,6 +1,6 @@
 #version 450
 // Dachsbacher & Stamminger 2005, Sec. 3.2 and 4.2: one-bounce light at the visible surfaces as the sum over texels of the reflective
-// shadow map; occlusion between texel and surface is left out.
+// shadow map, without occlusion between texel and surface.
 #pragma lumivox axis METHOD lights all projected
 #include "common/rsm.glsl"
 #if METHOD == METHOD_PROJECTED
@@ -11,9 +11,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {
   int width;      // texels along a side of a layer
-  int first;      // lights, or rows of texels of all layers together, that this dispatch adds
+  int first;      // first light, or first row of texels of all layers, of this dispatch; count: their number
   int count;
-  int samples;    // METHOD_PROJECTED: texels for each light
+  int samples;    // METHOD_PROJECTED: texels per light
   int lightCount;
   float reach;    // METHOD_PROJECTED: radius of the pattern, as a share of a half turn or of the width of the view
   float publishedScale;  // one over the sum of the printed weights; 0: weights by the density of the pattern
@@ -42,11 +42,11 @@ SurfaceLight lightAt(ivec3 texel) {
 #endif
 
 #if METHOD == METHOD_PROJECTED
-// Sec. 4.2: samples around the projection of the surface point into the light's view, denser near it: at the distance reach * xi1 and
-// the angle 2 pi xi2. The pattern lies in the plane of a directional light's view. Deviates: of lights with perspective it lies on the
-// sphere around them, where it crosses the faces of a cube, and the weight is the Jacobian of the pattern, which makes the sum right for a
-// constant map. As published the weight is xi1^2 over the sum of all xi1^2, so that the samples together stand for what the pattern
-// covers: of a view alone, the disc in its plane, of any perspective; of a cube, of which the print has no word, a cap of the sphere.
+// Sec. 4.2: samples around the projection of the surface point into the light's view, denser near it: at the distance reach * xi1 and the
+// angle 2 pi xi2. For a directional light, the pattern lies in the plane of its view. Deviates: for lights with perspective it lies on the
+// sphere around the light, across the faces of a cube; and the weight is the Jacobian of the pattern, which makes the sum exact for a
+// constant map. The published weight is xi1^2 over the sum of all xi1^2, so that the samples together represent the area of the pattern:
+// with a single view, the disc in its plane, in any perspective; with a cube, which the paper does not mention, a cap of the sphere.
 vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
   bool directional = light.kind == kLightDirectional, published = publishedScale > 0.0;
   bool inView = !directional && published && light.viewCount == 1;
@@ -54,14 +54,14 @@ vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
   vec2 centre = vec2(0.0);
   if (inView) {
     vec4 clip = views[firstLayer] * vec4(posWorld, 1.0);
-    if (clip.w <= 0.0) return vec3(0.0);  // behind the light there is no projection
+    if (clip.w <= 0.0) return vec3(0.0);  // no projection behind the light
     centre = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
   }
   vec3 axis = directional ? light.direction : normalize(posWorld - light.position);
   vec3 helper = abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 tangent = normalize(cross(helper, axis)), bitangent = cross(axis, tangent);
   float largest = directional ? reach * light.texelWidth * float(width) : reach * kPi;
-  // Of the disc, m^2, in texels where it lies in the view; of the cap, sr.
+  // Area of the disc, m^2, or texels if it lies in the view; solid angle of the cap, sr.
   float covered = directional ? kPi * largest * largest : 2.0 * kPi * (1.0 - cos(largest));
   if (inView) covered = kPi * reach * reach * float(width) * float(width);
   vec3 sum = vec3(0.0);
@@ -82,7 +82,7 @@ vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
     }
     if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThanEqual(texcoord, vec2(1.0)))) continue;
     SurfaceLight patchLight = lightAt(ivec3(ivec2(texcoord * float(width)), layer));
-    // Texels that one sample stands for: its part of the plane or of the sphere over that of a texel.
+    // Number of texels that one sample represents: its area on the plane or the sphere over that of a texel.
     float texelSize = light.texelWidth * light.texelWidth;
     if (!directional) {
       vec2 onPlane = (texcoord - 0.5) * float(width) * light.texelWidth;
@@ -113,7 +113,7 @@ void main() {
     for (int i = first; i < first + count; ++i) irradiance += surfaceLightIrradiance(taken[i], position.xyz, normal);
 #elif METHOD == METHOD_ALL
     for (int row = first; row < first + count; ++row) {
-      // A sum for each row keeps the rounding of a million small addends away.
+      // A sum per row limits the rounding error of a million small addends.
       vec3 sum = vec3(0.0);
       for (int x = 0; x < width; ++x) {
         ivec3 texel = ivec3(x, row % width, row / width);

@@ -1,5 +1,5 @@
 #version 450
-// Dachsbacher & Stamminger 2005, Sec. 4.1: position, normal and reflected flux of what each texel of a light's view sees.
+// Dachsbacher & Stamminger 2005, Sec. 4.1: position, normal and reflected flux of the surface in each texel of a light's view.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis SURFACES 0 1  // what the surfaces reflect is kept beside their flux
@@ -39,11 +39,11 @@ layout(location = 4) out vec4 outSpecular;
 #endif
 #endif
 
-// At a more grazing angle a texel stands for no larger patch: it would be longer than what one texel can tell of.
+// At more grazing angles the patch of a texel does not grow further: one texel cannot represent a longer patch.
 const float kSmallestCosine = 0.02;
 
 void main() {
-  // Derivatives, and samples which choose their mip level by them, before any discard: they are undefined after it.
+  // Derivatives, and texture samples that select their mip level by derivatives, come before any discard: after it they are undefined.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
   vec3 albedo = materials[materialIndex].diffuse.rgb;
 #if TEXTURES
@@ -64,7 +64,7 @@ void main() {
   float crossSection = crossSectionOf(light, posWorld, gl_FragCoord.xy - halfSize);
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
-  // The flux through the cross-section, whatever the slant: exact also where the patch is seen edge-on.
+  // The flux through the cross-section, independent of the slant: exact even if the patch is seen edge-on.
   outFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
 #if SURFACES
   outAlbedo = vec4(albedo, 1.0);

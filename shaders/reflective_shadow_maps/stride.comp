@@ -1,5 +1,5 @@
 #version 450
-// Every so many texels along both axes of each layer, the one in the middle of its square, as lights that stand for their squares.
+// Regular sub-sampling: the texel in the middle of each square of `stride` x `stride` texels of a layer becomes a light for the square.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "taken.glsl"
@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Parameters {
   int width, height;  // texels of a layer
   int stride;
   int across, down;  // squares of a layer
-  int count;   // of all layers
+  int count;   // squares of all layers
   int area;    // of lights: taken.glsl
 };
 

@@ -1,20 +1,20 @@
-// Sums of the texels' luminances of flux as a tree: each sum is of 16 neighbours in the order of texels, or of 16 such sums. The
-// root is the first, then follow the levels down to the texels. C++ side: techniques/reflective_shadow_maps/choose.cpp.
+// A tree of sums of the luminances of the texels' flux: each sum is over 16 neighbours in the order of the texels, or over 16 such sums.
+// The root comes first, then the levels down to the texels. C++ side: techniques/reflective_shadow_maps/choose.cpp.
 #ifndef LUMIVOX_SUM_TREE
 #define LUMIVOX_SUM_TREE
 #include "common/rsm.glsl"
 
 const uint kFan = 16u;
 
-// Sums of a level; level 0 are the texels themselves.
+// Number of sums of a level; level 0 is the texels themselves.
 uint levelSize(uint texels, uint level) {
   uint size = texels;
   for (uint i = 0u; i < level; ++i) size = (size + kFan - 1u) / kFan;
   return size;
 }
 
-// In which order the texels of a map are numbered. Layers are cut into strips, which are passed column by column; at each place
-// the layers of `together` views are passed, which look the same way. Rows one high of layers on their own are the order of the texture.
+// The order of a map's texels. Layers are cut into strips of `rows` rows, which are traversed column by column. At each position, the layers
+// of `together` views with the same direction follow each other. With rows = 1 and together = 1, it is the order of the texture.
 struct TexelOrder {
   uint width, height;  // texels of a layer
   uint rows;      // of a strip
@@ -31,7 +31,7 @@ ivec3 texelOf(uint index, TexelOrder order) {
   return ivec3(inStrip / rows, row + inStrip % rows, index % order.together * order.ways + way);
 }
 
-// The one after it.
+// The next texel in the order.
 void advance(inout ivec3 texel, TexelOrder order) {
   texel.z += int(order.ways);
   if (texel.z < int(order.together * order.ways)) return;

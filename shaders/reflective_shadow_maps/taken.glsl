@@ -9,12 +9,12 @@ layout(binding = 1) uniform sampler2DArray rsmNormal;
 layout(binding = 2) uniform sampler2DArray rsmFlux;
 layout(std430, binding = 1) writeonly buffer Taken { SurfaceLight taken[]; };
 
-// How large a light is; in the order of the parameter `area` of choose.
-const int kAreaSurface = 0;  // that of the surface
-const int kAreaShared = 1;   // the same, shared by all samples of an area light: together they cover what it lights once
-const int kAreaFacing = 2;   // that of a texel which faces the light (Lensing and Broll 2013, Sec. 4.1)
+// Kinds of area of a light, in the order of the parameter `area` of choose.
+const int kAreaSurface = 0;  // the area of the surface
+const int kAreaShared = 1;   // the same, divided among the samples of an area light, which light the same surfaces
+const int kAreaFacing = 2;   // the area of a texel that faces the light (Lensing and Broll 2013, Sec. 4.1)
 
-// A texel that stands for so many like it.
+// A texel as a light that represents `copies` equal texels.
 SurfaceLight texelLight(ivec3 texel, float copies, int kindOfArea) {
   vec4 normalArea = texelFetch(rsmNormal, texel, 0), flux = texelFetch(rsmFlux, texel, 0);
   vec3 posWorld = texelFetch(rsmPosition, texel, 0).xyz;

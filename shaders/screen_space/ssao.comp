@@ -1,16 +1,16 @@
 #version 450
-// Screen-space ambient occlusion (Mittring 2007): the share of points around a surface that lie before what the camera sees.
+// Screen-space ambient occlusion (Mittring 2007): the share of points around a surface that lie in front of the visible surfaces.
 #include "screen.glsl"
 
 const int kSphere = 0, kHemisphere = 1;
 layout(constant_id = 1) const int directions = kSphere;
 
 layout(std140, binding = 0) uniform Occlusion {
-  float range;  // how far before the surface point the plane of something may lie that occludes it, m
+  float range;  // largest distance of an occluder's plane in front of the surface point, m
 };
 
-// The i-th point, evenly distributed over the ball's radius by volume, relative to its centre. Over the sphere a stratum has a pair
-// opposite to each other, of which a plane through the centre blocks one; of an odd number the last has only the point above.
+// The i-th point relative to the centre of the sphere, uniform in volume. With kSphere, each stratum has a pair of opposite points, one of
+// which a plane through the centre occludes; with an odd number of points, the last stratum has only the point above.
 vec3 offsetOf(int i, int strata, vec3 normal, vec4 random) {
   bool sphere = directions == kSphere;
   int stratum = sphere ? i / 2 : i;
@@ -29,8 +29,8 @@ float unoccluded(ivec2 pixel, vec3 posWorld) {
     ivec2 other;
     vec3 offset = offsetOf(i, strata, normal, random);
     bool blocked = isBehindVisible(posWorld + offset, other);
-    // Not along the view: a floor at a slant hides what is below it from far before. Without what is left out the surface itself is what
-    // hides: the points below it.
+    // Distance of the occluder's plane instead of depth: a slanted floor occludes points below it from far in front. If the occluder is
+    // beyond the range, the surface itself occludes the points below it.
     if (blocked && dot(texelFetch(gPosition, other, 0).xyz - posWorld, texelFetch(gGeometricNormal, other, 0).xyz) > range)
       blocked = dot(offset, texelFetch(gGeometricNormal, pixel, 0).xyz) < 0.0;
     open += blocked ? 0 : 1;
@@ -45,6 +45,6 @@ void main() {
   vec4 position = texelFetch(gPosition, pixel, 0);
   float open = 1.0;
   if (position.w > 0.0) open = unoccluded(pixel, position.xyz);
-  // At most 1 last, so that what convex edges have above it is not lost from the mean over frames.
+  // Limited to 1 last, so that values above 1 at convex edges stay in the mean over frames.
   imageStore(resultImage, texel, vec4(vec3(min(accumulate(texel, vec3(open)).r, 1.0)), 1.0));
 }

@@ -1,6 +1,6 @@
 #version 450
-// Screen-space directional occlusion (Ritschel, Grosch & Seidel 2009): open directions bring the environment, blocked ones the light of the
-// surfaces that block them.
+// Screen-space directional occlusion (Ritschel, Grosch & Seidel 2009): unoccluded directions contribute the environment, occluded
+// directions the light of the surfaces that occlude them.
 #pragma lumivox axis EMISSION 0 1
 #include "screen.glsl"
 
@@ -15,7 +15,7 @@ layout(binding = 3) uniform sampler2D directRadiance;
 layout(binding = 4) uniform sampler2D gEmission;
 #endif
 
-// What a pixel's surface reflects of direct light. What it emits is no part of it: that light comes as direct light already.
+// Direct light that a pixel's surface reflects. Its emission is excluded, because emitters already are lights of the direct light.
 vec3 reflectedBy(ivec2 pixel) {
   vec3 radiance = texelFetch(directRadiance, pixel, 0).rgb;
 #if EMISSION
@@ -24,14 +24,14 @@ vec3 reflectedBy(ivec2 pixel) {
   return max(radiance, vec3(0.0));
 }
 
-// What the surface in a pixel, which blocks a direction, adds to E / pi.
+// Contribution to E / pi of the surface in a pixel, which occludes a direction.
 vec3 sentFrom(ivec2 pixel, vec3 posWorld, vec3 normal, float cosTheta) {
   vec3 toSender = texelFetch(gPosition, pixel, 0).xyz - posWorld;
   float cosSender = -dot(texelFetch(gGeometricNormal, pixel, 0).xyz, toSender);  // times the distance
   if (!(cosSender > 0.0)) return vec3(0.0);
   if (area == kSolidAngle) return reflectedBy(pixel) * (2.0 * cosTheta / float(samples));
   // L / pi A cos cos / d^2, A = pi r^2 / N.
-  const float kLeast = 0.01;  // of d, as a share of the radius
+  const float kLeast = 0.01;  // smallest d, as a share of the radius
   float distance = length(toSender), perRadius = radius / max(distance, kLeast * radius);
   float cosReceiver = max(dot(normal, toSender), 0.0) / distance;
   return reflectedBy(pixel) * (cosReceiver * cosSender / distance * perRadius * perRadius / float(samples));
@@ -41,7 +41,8 @@ vec3 arriving(ivec2 pixel, vec3 posWorld) {
   vec3 normal = texelFetch(gNormal, pixel, 0).xyz, sum = vec3(0.0);
   vec4 random = randomOf(pixel);
   for (int i = 0; i < samples; ++i) {
-    // Directions evenly over the hemisphere: one in each stratum of the cosine. Two neighbours together have the mean of theirs.
+    // Directions uniform over the hemisphere, one in each stratum of the cosine. The cosines of two
+    // neighbouring strata have the mean of both.
     float cosTheta = (float(i) + ((i & 1) == 0 ? random.x : 1.0 - random.x)) / float(samples);
     vec2 place = evenly(i, random.yz);
     ivec2 other;

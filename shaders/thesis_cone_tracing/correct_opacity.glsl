@@ -1,5 +1,5 @@
-// Listing 4.10: the counter of fragments in the alpha of a voxel gives way to its opacity, which is 1 where anything is. Empty voxels are
-// written as well, since the corrected grid is a texture of its own here; as printed only the others are, in place.
+// Listing 4.10: replaces the counter of fragments in a voxel's alpha by its opacity, 1 in occupied voxels. Deviates: the corrected grid is
+// a separate texture, so empty voxels are written as well; as printed, only occupied voxels are written, in place.
 layout(std140, binding = 0) uniform Correction {
   ivec3 resolution;
 };

@@ -1,7 +1,7 @@
 #version 450
-// Final gathering (Sec. 4.2.1, Listings 4.11 to 4.13): five cones over the hemisphere, with the weights 1 and 0.707, not normalised, so that a
-// constant environment comes in 3.828 times; and one cone as wide as the Phong lobe around the mirror direction. Its width, and that its light is
-// multiplied by the cosine of the surface, are not printed.
+// Final gathering (Sec. 4.2.1, Listings 4.11 to 4.13): five cones over the hemisphere, with the weights 1 and 0.707. They are not
+// normalised, so that a constant environment counts 3.828 times. One more cone, as wide as the Phong lobe, lies around the mirror
+// direction. Its width, and the multiplication of its light by the cosine at the surface, are not printed.
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform Cones {
   float coneRatio;    // diameter of one of the five cones over its height
   vec3 environment;   // radiance of the environment
   float maxDistance;  // m
-  float jitter;       // most by which a cone begins further on, in steps
+  float jitter;       // largest shift of a cone's first sample, in steps
   uvec2 seed;
 };
 layout(binding = 0) uniform sampler2D gPosition;
@@ -30,15 +30,16 @@ layout(binding = 5) uniform sampler2D gSpecular;
 layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
-// How far a cone's first sample is moved, [0, 1): by the pixel, the cone and the seed.
+// Random shift of a cone's first sample, [0, 1): depends on the pixel, the cone and the seed.
 float shiftOf(uint cone) {
   return unitInterval(hash4(uvec4(gl_GlobalInvocationID.x | gl_GlobalInvocationID.y << 16, cone, seed)).xy).x;
 }
 
-// Listing 4.13, lengths in metres in place of shares of the grid. A sample is two finest voxels wide or as wide as the cone, and is taken where
-// its step begins. The exponent of the opacity correction is half of its diameter over the first one's: with plain means that is half of what a
-// uniform medium takes. What was gathered is multiplied by the opacity anew at every step, and values that the opacity has been multiplied into
-// by it again. The environment, of which the listing says nothing, is seen by what the opacity leaves.
+// Listing 4.13, with lengths in metres instead of shares of the grid. A sample is at least two finest voxels wide, otherwise as wide as the
+// cone, and is taken at the beginning of its step. The exponent of the opacity correction is half of the sample's diameter over that of the
+// first sample: with plain means, this is half of the exponent of a uniform medium. As printed, each step multiplies the gathered radiance
+// by the opacity again, and multiplies values that are pre-multiplied by opacity once more. The environment, which the listing does not
+// mention, is weighted by one minus the opacity.
 vec3 traceCone(vec3 apex, vec3 direction, float ratio, uint cone) {
   float leastDiameter = 2.0 * storeVoxel, distance = leastDiameter;
   float firstDiameter = max(leastDiameter, ratio * distance);
@@ -62,7 +63,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float ratio, uint cone) {
 }
 
 const int kCones = 5;             // Listing 4.12
-const uint kGlossyCone = 0xffffu;  // its number
+const uint kGlossyCone = 0xffffu;  // number of the glossy cone
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -71,7 +72,7 @@ void main() {
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
-    int first = 0, end = kCones;  // of the cones: five diffuse ones and one glossy one
+    int first = 0, end = kCones;  // range of cones: five diffuse cones, then one glossy cone
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb, tangent = tangentTo(normal), bitangent = cross(normal, tangent);
     if (!any(greaterThan(albedo, vec3(0.0)))) first = kCones;
@@ -84,7 +85,7 @@ void main() {
     float cosMirror = max(dot(mirror, normal), 0.0);
     if (any(greaterThan(specular.rgb, vec3(0.0))) && cosMirror > 0.0) end = kCones + 1;
 #endif
-    // Every cone passes through the one call of a march, which is inlined wherever it is called.
+    // One call of the march for all cones: it is inlined at every call.
     for (int i = first; i < end; ++i) {
       vec3 direction = normal;
       float ratio = coneRatio, weight = 1.0;

@@ -1,10 +1,11 @@
 #version 450
-// Listings 4.8 and 4.9: the light that falls on the front of a fragment goes into a running average of its voxel, in 8 bits a channel. The
-// last channel counts the fragments modulo 256: the 256th makes 0 of it, and the next one begins anew. The average depends on the order in
-// which fragments come, and so does every image that is made of it. Deviates: radiance, albedo / pi times irradiance, in units of what the
-// largest byte stands for, and at most that; the listing stores colours, and brighter ones wrap.
+// Listings 4.8 and 4.9: the light reflected by the front of a fragment goes into a running average of its voxel, in 8 bits per channel. The
+// last channel counts the fragments modulo 256: the 256th fragment resets it to 0, and the next one starts a new average. The average
+// depends on the order of the fragments, and so does every image computed from it. Deviates: stores radiance, albedo / pi times irradiance,
+// in units of the radiance of the largest byte, and clamped to it; the listing stores colours, and brighter colours wrap.
 //
-// GRIDS six: the same average in each of six grids, one after another. What the faces of the finest voxels hold is not printed.
+// GRIDS six: the same average in each of six grids, one after another. The thesis does not print how
+// the faces of the finest voxels are filled.
 #pragma lumivox axis GRIDS one six
 #pragma lumivox axis LIGHTS 0 1
 
@@ -21,8 +22,8 @@ layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m
   float voxelSize;  // m
   int lightCount;
-  float largest;    // W/(sr m^2) that the largest byte stands for
-  float ambient;    // irradiance of all surfaces besides that of the lights, W/m^2
+  float largest;    // radiance of the largest byte, W/(sr m^2)
+  float ambient;    // irradiance of all surfaces in addition to the lights, W/m^2
 };
 layout(binding = 0, r32ui) uniform coherent volatile uimage3D averages;
 #if GRIDS == GRIDS_SIX
@@ -39,7 +40,7 @@ uint wordOf(vec4 bytes) {
   return cut.x | cut.y << 8 | cut.z << 16 | cut.w << 24;
 }
 
-// The average with one more value. What was stored is multiplied by its count and divided by the next one.
+// The average with one more value: the stored average is multiplied by its count, and the new sum divided by the next count.
 uint averaged(uint stored, vec4 value) {
   vec4 sum = bytesOf(stored);
   sum.rgb *= sum.a;
@@ -47,7 +48,7 @@ uint averaged(uint stored, vec4 value) {
   return wordOf(vec4(sum.rgb / sum.a, sum.a));
 }
 
-// Images cannot be passed to a function by every compiler.
+// A macro, because not every compiler can pass images to a function.
 #define ADD_TO(grid)                                                                   \
   {                                                                                    \
     uint expected = 0u, wanted = wordOf(value), found;                                 \

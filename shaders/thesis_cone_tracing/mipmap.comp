@@ -1,5 +1,5 @@
 #version 450
-// One level of one grid, an invocation a voxel.
+// One level of one grid, one invocation per voxel.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "mipmap.glsl"
 

@@ -1,12 +1,12 @@
-// Sec. 4.2.1, Fig. 64: the two children of a column along an axis are composited front to back as seen from either side, and the four columns
-// are averaged. At odd sizes the last children are missed. Both sides of an axis have the same opacity, and radiance of their own.
+// Sec. 4.2.1, Fig. 64: the two children of a column along an axis are composited front to back as seen from either side, and the four
+// columns are averaged. At odd sizes the last children are missed. Both faces of an axis have the same opacity and different radiance.
 #include "common/cones.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 coarse;  // voxels of the level that is written
   int fineLevel;
 };
-// By the outward normals of the faces.
+// Named by the outward normals of the faces.
 layout(binding = 0) uniform sampler3D positiveX;
 layout(binding = 1) uniform sampler3D negativeX;
 layout(binding = 2) uniform sampler3D positiveY;
@@ -20,7 +20,7 @@ layout(binding = 3) uniform writeonly image3D negativeYImage;
 layout(binding = 4) uniform writeonly image3D positiveZImage;
 layout(binding = 5) uniform writeonly image3D negativeZImage;
 
-// A child at the face that looks to lower coordinates, and at the one that looks to higher ones.
+// The face of a child whose outward normal points to lower coordinates; higherFace: to higher coordinates.
 vec4 lowerFace(int axis, ivec3 child) {
   return axis == 0 ? texelFetch(negativeX, child, fineLevel)
        : axis == 1 ? texelFetch(negativeY, child, fineLevel)

@@ -1,5 +1,5 @@
 #version 450
-// The same as a draw without attributes (Table 1).
+// mipmap_directional.comp as a draw without attributes (Table 1).
 #include "drawn.glsl"
 #include "mipmap_directional.glsl"
 

@@ -1,15 +1,16 @@
 #version 450
-// Sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity. In leaves each vertex is the mean of the voxels of its own
-// leaf around it (Sec. 4.2.2, Fig. 69: averages are stored in the corners of the brick, Listing 4.23, and spread through it), and of what the
-// neighbours find once they are averaged (octree_transfer.comp). At corners each brick gets the eight voxels that are its own, and those that
-// it shares with the neighbour above are copied from there.
+// Writes the bricks of the leaves from the sums: radiance pre-multiplied by opacity, and opacity.
+// If voxels lie in leaves (octreeAtCorners 0), each vertex is the mean of the voxels of its own leaf around it (Sec. 4.2.2, Fig. 69:
+// averages are stored in the corners of the brick, Listing 4.23, and spread through it).
+// octree_transfer.comp then averages it with the neighbours.
+// If voxels lie at corners (1), each brick gets its own eight voxels; those that it shares with the higher neighbour are copied from there.
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 #include "octree_sums.glsl"
 
 layout(std140, binding = 0) uniform Leaves {
-  int coverageSum;   // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
-  int keepsOpacity;  // 1: the opacity is that of `opaque`
+  int coverageSum;   // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean
+  int keepsOpacity;  // 1: the opacity is read from `opaque`
 };
 layout(binding = 0) uniform sampler3D opaque;
 layout(binding = 0) uniform writeonly image3D poolImage;
@@ -17,7 +18,7 @@ layout(binding = 0) uniform writeonly image3D poolImage;
 vec4 meanIn(VoxelSums sum) {
   vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
   if (coverageSum != 0) {
-    // The sums hold means over the fragments; radiance keeps its share of the opacity.
+    // The sums hold means over the fragments; radiance over opacity does not change.
     float opacity = min(value.a * float(sum.items), 1.0);
     value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
   }

@@ -1,6 +1,6 @@
 #version 450
-// The dispatches over the bricks of each depth, those that it took from the counter (Listing 4.21). Where there is too little room the tree
-// stays empty; the host learns how much is wanted when the frame is done.
+// Arguments of the indirect dispatches over the bricks that each depth took from the counter (Listing 4.21). If there is too little room,
+// the tree stays empty, and the host reads the wanted sizes after the frame.
 #define OCTREE_BUILD
 layout(local_size_x = 16) in;
 #include "octree_levels.glsl"

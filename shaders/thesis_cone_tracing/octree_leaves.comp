@@ -1,6 +1,6 @@
 #version 450
-// What fragments are, averaged in the voxels of the leaves, each found from the root (Sec. 4.2.2, Listing 4.23): the light that they reflect
-// without a lamp, their colours, or their normals as the thesis packs them, half of each plus a half.
+// Averages an attribute of fragments in the voxels of the leaves, each found by descending from the root (Sec. 4.2.2, Listing 4.23):
+// reflected ambient light, colours, or normals as the thesis packs them, n / 2 + 1/2.
 layout(local_size_x = 64) in;
 #include "common/constants.glsl"
 #include "common/fragments.glsl"
@@ -18,11 +18,12 @@ void main() {
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel), own = voxel & 1;
   uint brick = brickAt(voxel >> 1, octreeDepth);
-  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return;  // there was too little room, and the frame is not shown
+  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return;  // too little room: the frame is rendered again
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   vec3 value = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
   if (what == kLight) value = value / kPi * ambient;
-  // Listings 4.9 and 4.23 average packed normals without their coverage, which would pull them to 0, and so to (-1, -1, -1).
+  // Listings 4.9 and 4.23 average packed normals without their coverage. Coverage would pull the packed
+  // values to 0, a normal of (-1, -1, -1).
   if (what == kNormal) value = clamp(0.5 + 0.5 * unpackNormal(fragment.normal), 0.0, 1.0);
   float coverage = what == kNormal ? 1.0 : clamp(blueCoverage.y, 0.0, 1.0);
   uint place = sumsOf(brick, uint(own.x | own.y << 1 | own.z << 2));

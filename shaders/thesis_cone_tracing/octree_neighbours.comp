@@ -1,6 +1,6 @@
 #version 450
-// The neighbours of the nodes of one depth: each fragment goes on from its node by the node's width along each axis and looks for what is there
-// from the root (Listing 4.18).
+// Finds the neighbours of the nodes of one depth: each fragment moves from its node by the node's width along each axis and descends from
+// the root to the node there (Listing 4.18).
 #define OCTREE_BUILD
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
@@ -25,7 +25,7 @@ void main() {
       for (int x = first.x; x <= last.x; ++x) {
         uint node = nodeAt(ivec3(x, y, z), depth);
         if (node == kNone || octreeNodes[node].brick == kNone) continue;
-        // Whoever writes here writes the same.
+        // All invocations write the same values.
         octreeNodes[node].neighbourX = neighbour(ivec3(x + 1, y, z));
         octreeNodes[node].neighbourY = neighbour(ivec3(x, y + 1, z));
         octreeNodes[node].neighbourZ = neighbour(ivec3(x, y, z + 1));

@@ -1,12 +1,12 @@
 #version 450
-// Pre-filtering in parts: from the children of each node alone, the centre of its brick, which they know all of, then its faces, edges and
-// corners, of which the neighbours know the rest (Sec. 3.1.3, 4.2.2, Fig. 70 and 71; Crassin et al. 2011, Sec. 5).
-// A fine voxel counts in each brick that holds it by the inverse of their number, so that all parts together have the 3 x 3 x 3 weights 1, 2, 1
-// over 4. To be added (Crassin) a part is its share of the sum; to be averaged (thesis) it is a mean of its own.
+// Pre-filters bricks in parts, from the children of each node only. The centre of a brick is then complete; its faces, edges and corners
+// still lack the parts of the neighbours (Sec. 3.1.3, 4.2.2, Fig. 70 and 71; Crassin et al. 2011, Sec. 5). A fine voxel has in each brick
+// that holds it a weight of one over the number of these bricks, so that all parts together have the 3 x 3 x 3 weights 1, 2, 1 over 4.
+// Parts to be added (Crassin) are shares of the sum; parts to be averaged (thesis) are means.
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 
-// Coordinates of a voxel of a brick that lie on its border.
+// How many coordinates of the filtered voxels lie on the border of the brick: 0 centre, 1 faces, 2 edges, 3 corners.
 layout(constant_id = 0) const int part = 0;
 
 layout(std140, binding = 0) uniform Parts {
@@ -18,7 +18,7 @@ layout(binding = 0) uniform writeonly image3D poolImage;  // the same
 
 const uint kPartThreads[4] = uint[4](1u, 6u, 12u, 8u);
 
-// The voxel of a brick that a thread makes.
+// The voxel of a brick that an invocation filters.
 ivec3 vertexOf(uint lane) {
   ivec3 vertex = ivec3(1);
   if (part == 3) return 2 * ivec3(lane & 1u, lane >> 1 & 1u, lane >> 2);
@@ -46,16 +46,16 @@ void main() {
       for (int y = from.y; y <= to.y; ++y)
         for (int x = from.x; x <= to.x; ++x) {
           vec4 value = texelFetch(pool, texelOf(childBrick) + ivec3(x, y, z) - origin, 0);
-          // On the border of the grid there is no other node to add the other half.
+          // On the border of the grid there is no neighbour to add the other half.
           ivec3 fine = 4 * place + ivec3(x, y, z);
           ivec3 outer = ivec3(equal(fine, ivec3(0))) + ivec3(equal(fine, ivec3(4 << depth)));
           sum += means != 0 ? value : value * float(1 << outer.x + outer.y + outer.z);
         }
   }
-  // The weight of every one that is counted is a quarter along each axis: that of the outer two, and of the middle one in each of the two
-  // nodes or children that hold it.
+  // Each counted value has a weight of 1/4 along each axis: the two outer voxels, and the middle voxel in each of the two nodes or children
+  // that hold it.
   sum /= 64.0;
-  // Of a border there is half the weight along each axis across it.
+  // Along each axis across a border, the part has half of the weight.
   if (means != 0) sum *= exp2(float(part));
   imageStore(poolImage, texelOf(brick) + vertex, sum);
 }

@@ -1,6 +1,6 @@
 #version 450
-// The nodes of the next depth: all behind those of the depths before (Listing 4.21). Their bricks begin where the
-// counter stands.
+// Sets the range of nodes of the next depth: all nodes after those of the previous depths (Listing 4.21). Their bricks begin at the current
+// value of the counter.
 #define OCTREE_BUILD
 layout(local_size_x = 1) in;
 #include "octree_levels.glsl"

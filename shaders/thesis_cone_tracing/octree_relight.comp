@@ -1,8 +1,7 @@
 #version 450
-// Photons relight the mean colour of their voxel, whose mean normal faces the light more or less, and are averaged (Listing 4.24).
-// The colour of the light, which the listing leaves open, is its irradiance over pi, so that a Lambert surface has the radiance that it
-// reflects. What is averaged holds the voxels of neighbours' leaves too: of half a surface beside nothing the normal turns towards
-// (-1, -1, -1).
+// Photons relight the mean colour of their voxel by the cosine between its mean normal and the light, and are averaged (Listing 4.24).
+// The colour of the light, which the listing leaves open, is its irradiance over pi, so that a Lambertian surface has the radiance that it
+// reflects. The averages include voxels of neighbouring leaves: next to empty space, the normal turns towards (-1, -1, -1).
 layout(local_size_x = 64) in;
 #include "common/lights.glsl"
 #include "octree_levels.glsl"
@@ -20,7 +19,7 @@ layout(binding = 3) uniform sampler3D pool;
 layout(binding = 4) uniform sampler3D colours;
 layout(binding = 5) uniform sampler3D normals;
 
-// The voxel of a leaf at a place in voxels; false: no surface is there.
+// The leaf's brick and the voxel in it at a point, in voxels; false: the voxel is empty.
 bool voxelAt(vec3 at, out uint brick, out ivec3 own) {
   ivec3 voxel = ivec3(floor(at));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, ivec3(2 << octreeDepth)))) return false;
@@ -35,8 +34,8 @@ void main() {
   ivec3 texel = ivec3(int(index) % mapSize.x, int(index) / mapSize.x % mapSize.y, int(index) / (mapSize.x * mapSize.y));
   vec4 position = texelFetch(photonPosition, texel, 0);
   if (!(position.w > 0.0)) return;
-  // A surface on the face between two voxels lies in both of them or in one to the voxelizer, and by rounding in any to the photon: the one
-  // before the surface is what others see of it.
+  // The voxelizer puts a surface on the face between two voxels into one or both of them, and rounding may put the photon into the other.
+  // The voxel in front of the surface, which other surfaces see, is tried first.
   const float kRounding = 0.01;  // voxels
   vec3 at = (position.xyz - gridLow) / voxelSize, aside = kRounding * texelFetch(photonNormal, texel, 0).xyz;
   uint brick;

@@ -1,5 +1,5 @@
 #version 450
-// Gives each tagged node of a depth a brick and, above the leaves, eight children, from atomic counters (Listing 4.22).
+// Allocates a brick and, above the leaves, eight children for each tagged node of a depth, by atomic counters (Listing 4.22).
 #define OCTREE_BUILD
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"

@@ -1,5 +1,5 @@
 #version 450
-// Tags the nodes of one depth that are to be subdivided, each found from the root by every fragment (Listings 4.17 and 4.19).
+// Tags the nodes of one depth that are to be subdivided: each fragment descends from the root to its nodes (Listings 4.17 and 4.19).
 #define OCTREE_BUILD
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
@@ -17,8 +17,8 @@ void main() {
     for (int y = first.y; y <= last.y; ++y)
       for (int x = first.x; x <= last.x; ++x) {
         uint node = nodeAt(ivec3(x, y, z), depth);
-        if (node == kNone) continue;  // there was too little room
-        // Whoever writes here writes the same. The neighbours are not known yet.
+        if (node == kNone) continue;  // too little room
+        // All invocations write the same values. neighbourX stores the node's position until the neighbours are known.
         octreeNodes[node].children = kTagged;
         octreeNodes[node].neighbourX = packVoxel(ivec3(x, y, z));
       }

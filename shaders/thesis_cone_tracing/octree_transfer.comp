@@ -1,8 +1,8 @@
 #version 450
-// Between bricks and their neighbours along one axis, for the nine voxels that both hold. To add to the right what the left one has found, and
-// then to copy it back to the left, completes sums of which each holds a part (Crassin et al. 2011, Sec. 6; thesis 004, Sec. 3.1.3, Fig. 34).
-// To average completes means of which each holds one (Sec. 4.2.2). Each pair of bricks is one thread's, so that none writes what another
-// reads. x, then y, then z: then the corners that eight bricks share agree too.
+// Exchanges the nine voxels that a brick and its higher neighbour along one axis share. kAdd adds the left brick's values to the right, and
+// kCopy then copies the sums back to the left: this completes sums of which each brick holds a part (Crassin et al. 2011, Sec. 6; thesis
+// 004, Sec. 3.1.3, Fig. 34). kAverage completes means of which each brick holds one (Sec. 4.2.2). One invocation handles each pair of
+// voxels, so that none writes what another reads. Run along x, then y, then z, so that the corners that eight bricks share agree too.
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
 

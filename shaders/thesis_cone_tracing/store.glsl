@@ -1,4 +1,4 @@
-// The voxels that cones read, in values blended between levels: one grid (Listing 4.14), six directional grids (Listing 4.15) or an octree
+// The store that cones read, with values blended between levels: one grid (Listing 4.14), six directional grids (Listing 4.15) or an octree
 // (Listing 4.25). C++ side: techniques/thesis_cone_tracing/gather.cpp.
 #pragma lumivox axis STORE grid six octree
 #include "common/cones.glsl"
@@ -8,13 +8,13 @@
 
 layout(std140, binding = 1) uniform Store {
   vec3 storeLow;        // m
-  float storeVoxel;     // finest voxels, m
+  float storeVoxel;     // size of the finest voxels, m
   vec3 storeExtent;     // m
-  float storeUnit;      // W/(sr m^2) that the value 1 stands for
-  float storeCoarsest;  // level; of an octree
+  float storeUnit;      // radiance of the value 1, W/(sr m^2)
+  float storeCoarsest;  // coarsest level of an octree
 };
 
-// rgb radiance / storeUnit, multiplied by the opacity a, around a point in voxels of `size` m.
+// readStore(): rgb radiance / storeUnit, pre-multiplied by the opacity a, around a point, in voxels of `size` m.
 #if STORE == STORE_GRID
 layout(binding = 4) uniform sampler3D radianceGrid;
 
@@ -23,7 +23,7 @@ vec4 readStore(vec3 at, vec3 direction, float size) {
 }
 
 #elif STORE == STORE_SIX
-// By the outward normals of the faces. A cone sees the three whose normals are against it.
+// Named by the outward normals of the faces. A cone sees the three that face against its direction.
 layout(binding = 6) uniform sampler3D positiveX;
 layout(binding = 7) uniform sampler3D negativeX;
 layout(binding = 8) uniform sampler3D positiveY;
@@ -42,11 +42,11 @@ vec4 readStore(vec3 at, vec3 direction, float size) {
 #else
 layout(binding = 4) uniform sampler3D brickPool;
 
-// Values of a level around a point, finest voxels from storeLow, by the hardware's filter within a brick. False: the tree has no node of that
-// level there. Below voxel 0 of the level lies one with nothing in it.
+// Value of a level at a point, in finest voxels from storeLow, by the hardware filter within a brick. False: the tree has no node of that
+// level there. The voxel below voxel 0 of a level counts as empty.
 bool readLevel(vec3 at, int level, out vec4 value) {
   int depth = octreeDepth - level;
-  // The middle of voxel 0 lies at the same place at all levels.
+  // The centre of voxel 0 has the same position at all levels.
   float firstVoxel = octreeAtCorners != 0 ? 0.5 : 0.0;
   vec3 from = at * exp2(float(-level)) - firstVoxel * exp2(float(-level));
   vec3 inside = clamp(from, vec3(0.0), vec3(float(2 << depth)));
@@ -60,8 +60,8 @@ bool readLevel(vec3 at, int level, out vec4 value) {
   return true;
 }
 
-// Listing 4.25 counts levels from the root, so that their fraction is the share of the finer one, and gives it to the coarser; where the
-// finer one ends there is nothing.
+// Listing 4.25 counts levels from the root, so that the fraction is the share of the finer level, but gives it to the coarser level. Where
+// the finer level has no node, the value is 0.
 vec4 readStore(vec3 at, vec3 direction, float size) {
   float coarseness = clamp(log2(size / storeVoxel), 0.0, storeCoarsest), counted = storeCoarsest + 1.0 - coarseness;
   vec3 voxel = (at - storeLow) / storeVoxel;

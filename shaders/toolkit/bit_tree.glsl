@@ -1,12 +1,13 @@
-// A bit for each node that a tree over a grid could have: depth d, from the root at 0 on, has 8^d of them along a Morton curve, and the
-// depths lie one behind the other. RankedTags count the bits before theirs, so a node finds its place in a list of the nodes in one read.
+// One bit for each possible node of an octree over a grid: depth d, with the root at depth 0, has 8^d bits along a Morton curve, and the
+// depths follow each other. RankedTags add the number of bits set before them, so that a node finds its
+// place in a list of nodes in one read.
 // C++ side: framework/include/lumivox/toolkit/bit_tree.h.
 #ifndef LUMIVOX_BIT_TREE
 #define LUMIVOX_BIT_TREE
 
-// The first word of a depth d, which has 8^d bits in a word at least:
+// The first word of a depth d, whose 8^d bits take at least one word:
 //   1 + 1 + sum over k from 2 to d - 1 of 2^(3k - 5) = 2 + 2 (8^(d - 2) - 1) / 7,
-// where (8^n - 1) / 7 has every third of 3n bits.
+// where (8^n - 1) / 7 has every third of 3n bits set.
 uint firstWord(int depth) { return depth < 2 ? uint(depth) : 2u + 2u * (0x09249249u & ((1u << 3 * (depth - 2)) - 1u)); }
 
 uint spreadBits(uint x) {
@@ -28,13 +29,13 @@ ivec3 placeOf(uint morton) { return ivec3(gatherBits(morton), gatherBits(morton 
 const uint kNone = 0xffffffffu;
 uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
 
-// Bits of nodes, tags, beside the number of tagged nodes before them.
+// Bits of 32 nodes, and the number of tagged nodes before them.
 struct RankedTags {
   uint tags;
   uint nodesBefore;
 };
 
-// The number of tagged nodes before one by its place along the curve; kNone: it has no tag.
+// The number of tagged nodes before a node, given by its place along the curve; kNone if the node has no tag.
 uint rankIn(RankedTags word, uint morton) {
   uint bit = morton & 31u;
   return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));

@@ -2,7 +2,7 @@
 #ifndef LUMIVOX_BOXES_IN_VIEWS
 #define LUMIVOX_BOXES_IN_VIEWS
 
-// What a box covers of one view.
+// The part of one view that a box covers.
 struct Cast {
   vec4 rectangle;  // low and high x, y in clip space
   vec2 depths;     // nearest and farthest
@@ -25,7 +25,7 @@ Cast castOf(mat4 view, vec3 low, vec3 high) {
     result.depths = vec2(min(result.depths.x, at.z), max(result.depths.y, at.z));
   }
   if (isBehind || any(outside)) return kNothing;
-  // Of what begins behind the light anything may be seen.
+  // A box that reaches behind the light may cover any part of the view.
   return crosses ? Cast(vec4(-1.0, -1.0, 1.0, 1.0), vec2(-1e30, 1e30)) : result;
 }
 

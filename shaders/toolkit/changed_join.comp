@@ -1,5 +1,5 @@
 #version 450
-// Adds the cells of another frame to those that have changed.
+// Adds the changed cells of another frame to those of this one.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #define CHANGES_BUILD

@@ -1,5 +1,5 @@
 #version 450
-// Lists the static fragments of changed cells behind those that move.
+// Appends the static fragments of changed cells to the list of moving fragments.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "changed_cells.glsl"

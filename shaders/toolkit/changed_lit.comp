@@ -1,6 +1,6 @@
 #version 450
-// Finds the cells to which light may come otherwise: those that lie in a shadow view behind something that moves. A cell that is found is
-// lit again and nothing else, so that it does no harm to find too many.
+// Finds the cells whose direct light may change: those that lie behind a moving object in a shadow view. A cell found needlessly only costs
+// being lit again, so the test is conservative.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #define CHANGES_BUILD
@@ -18,7 +18,7 @@ layout(std430, binding = 2) readonly buffer CellEnds { uint cellEnds[]; };
 
 void main() {
   uint cell = listIndex();
-  if (cell >= 1u << 3 * cellDepth || cellEnds[cell] == (cell > 0u ? cellEnds[cell - 1u] : 0u)) return;  // or nothing static is there
+  if (cell >= 1u << 3 * cellDepth || cellEnds[cell] == (cell > 0u ? cellEnds[cell - 1u] : 0u)) return;  // or no static fragment in it
   vec3 low = gridLow + cellSize * vec3(placeOf(cell));
   if (isShadowedAnew(low, low + cellSize, lightCount, boxCount, texel)) setChanged(cell);
 }

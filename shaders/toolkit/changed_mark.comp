@@ -1,5 +1,5 @@
 #version 450
-// The cells that moving fragments lie in; lists these.
+// Marks the cells that contain moving fragments, and lists these fragments.
 layout(local_size_x = 64) in;
 #include "moving_fragments.glsl"
 #define CHANGES_BUILD

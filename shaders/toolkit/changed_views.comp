@@ -1,5 +1,5 @@
 #version 450
-// What the bounds of moving geometry cover of each shadow view.
+// The part of each shadow view that the bounds of moving geometry cover.
 layout(local_size_x = 64) in;
 #define SHADOW_VIEWS
 #include "common/lights.glsl"

@@ -1,5 +1,5 @@
 #version 450
-// Counts the fragments of each voxel; the first one there claims a slot for it. The volume holds numbers of fragments until number.comp.
+// Counts the fragments of each voxel; the first fragment of a voxel claims its slot. Until number.comp, the volume holds these counts.
 // C++ side: claimSlots() in framework/include/lumivox/toolkit/voxel_slots.h.
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"

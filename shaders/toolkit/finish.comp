@@ -1,6 +1,6 @@
 #version 450
-// Turns a number of items into the arguments of a dispatch over them, so that no pass waits for the count to travel to the host. What there
-// was no room for is cut off; how many were wanted is kept, for the host to look at when the frame is done.
+// Turns a number of items into the arguments of an indirect dispatch over them, so that no pass waits for a read-back. The number is
+// limited to the capacity; the wanted number is kept for the host to check after the frame.
 // C++ side: finishCount() in framework/include/lumivox/toolkit/counts.h.
 layout(local_size_x = 1) in;
 #include "common/list.glsl"

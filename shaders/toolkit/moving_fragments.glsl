@@ -1,5 +1,5 @@
-// An invocation for each fragment of a list, or (MOVING) for each of those that move, which lie behind the others. Included after the local
-// size, which is along x alone. C++ side: movingOf() and bindStaticCount() in framework/include/lumivox/toolkit/change_tracking.h.
+// One invocation for each fragment of a list, or (MOVING) for each moving fragment; these follow the static ones. Included after the local
+// size, which is along x only. C++ side: movingOf() and bindStaticCount() in framework/include/lumivox/toolkit/change_tracking.h.
 #pragma lumivox axis MOVING 0 1
 #include "common/fragments.glsl"
 #if MOVING

@@ -1,5 +1,5 @@
 #version 450
-// The number of fragments moves from the volume to the slot, and the volume tells the slot's number.
+// Moves the number of fragments of each voxel from the volume to the slot, and stores the slot's number plus 1 in the volume.
 // C++ side: claimSlots() in framework/include/lumivox/toolkit/voxel_slots.h.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

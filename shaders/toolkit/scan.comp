@@ -1,13 +1,13 @@
 #version 450
-// In place of numbers the sums of those before each: of several columns, each by itself. One work group.
+// Exclusive prefix sum, in place, of each of several columns. One work group.
 // C++ side: scan() in framework/include/lumivox/toolkit/counts.h.
 #pragma lumivox axis TOTALS 0 1
 layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Scan { uint items, columns; };
-layout(std430, binding = 0) buffer Numbers { uint numbers[]; };  // the columns of an item beside each other
+layout(std430, binding = 0) buffer Numbers { uint numbers[]; };  // the columns of an item are adjacent
 #if TOTALS
-layout(std430, binding = 1) writeonly buffer Totals { uint totals[]; };  // a word a column
+layout(std430, binding = 1) writeonly buffer Totals { uint totals[]; };  // a word per column
 #endif
 
 shared uint parts[64];
@@ -29,6 +29,6 @@ void main() {
       numbers[columns * i + column] = before;
       before += number;
     }
-    barrier();  // the next column's parts take the place of these
+    barrier();  // the next column reuses `parts`
   }
 }

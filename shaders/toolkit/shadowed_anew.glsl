@@ -1,4 +1,4 @@
-// Whether light may come to a box otherwise: it lies in a shadow view behind something that moves.
+// Whether the direct light of a box may change: the box lies behind a moving object in a shadow view.
 // C++ side: BoxesInViews in framework/include/lumivox/toolkit/change_tracking.h.
 #ifndef LUMIVOX_SHADOWED_ANEW
 #define LUMIVOX_SHADOWED_ANEW
@@ -6,14 +6,14 @@
 #include "common/lights.glsl"
 #include "boxes_in_views.glsl"
 
-layout(std430, binding = 1) readonly buffer Casts { Cast casts[]; };  // of each view the boxes of what moves (changed_views.comp)
+layout(std430, binding = 1) readonly buffer Casts { Cast casts[]; };  // for each view, the boxes of moving objects (changed_views.comp)
 
 // `texel`: of the shadow views, in clip space.
 bool isShadowedAnew(vec3 low, vec3 high, int lightCount, int boxCount, float texel) {
   for (int i = 0; i < lightCount; ++i) {
     LightSample light = lights[i];
     if (light.firstView < 0) continue;
-    // Visibility is looked up up to two texels of the view off the surface, between four texels.
+    // Visibility is read up to two texels of the view away from the surface, filtered over four texels.
     const float kOffset = 2.1, kFilter = 2.0;
     vec3 farthest = max(abs(low - light.position), abs(high - light.position));
     float offset = kOffset * light.texelWidth * (light.kind == kLightDirectional ? 1.0 : length(farthest));

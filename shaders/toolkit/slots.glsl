@@ -1,4 +1,4 @@
-// An invocation for each occupied voxel that has a slot. Included after the local size, which is along x alone.
+// One invocation for each occupied voxel that has a slot. Included after the local size, which is along x only.
 // C++ side: forEachSlot() in framework/include/lumivox/toolkit/voxel_slots.h.
 #ifndef LUMIVOX_SLOTS
 #define LUMIVOX_SLOTS

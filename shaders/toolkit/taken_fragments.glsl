@@ -1,5 +1,5 @@
-// The fragments that a shader takes: all of a list, or (CHANGED) only those in changed cells. Included after the local size, which is along
-// x alone.
+// The fragments that a shader processes: all of a list, or (CHANGED) only those in changed cells. Included after the local size, which is
+// along x only.
 // C++ side: forEachFragment(), forEachChanged() in framework/include/lumivox/toolkit/.
 #ifndef LUMIVOX_TAKEN_FRAGMENTS
 #define LUMIVOX_TAKEN_FRAGMENTS
@@ -10,7 +10,7 @@ layout(std430, binding = 13) readonly buffer ChangedCount { uint changedCount; }
 layout(std430, binding = 14) readonly buffer ChangedFragments { uint changedFragments[]; };
 #endif
 
-// The fragment of this thread; false behind the last.
+// The index of this invocation's fragment; false past the last fragment.
 bool takenFragment(out uint index) {
   index = listIndex();
 #if CHANGED

@@ -1,4 +1,4 @@
-// The values of a field of voxels, whatever holds them: textures, stacks of bits, or a list whose items were marked in a volume.
+// The values of a field of voxels, stored in textures, in stacks of bits, or in a volume in which the items of a list were marked.
 // C++ side: VoxelField in framework/include/lumivox/toolkit/voxel_view.h.
 #ifndef LUMIVOX_VOXEL_FIELD
 #define LUMIVOX_VOXEL_FIELD
@@ -6,13 +6,13 @@
 
 layout(std140, binding = 1) uniform FieldParameters {
   vec3 gridLow;          // corner of voxel (0,0,0), m
-  float fieldUnit;       // that the number 1 stands for
+  float fieldUnit;       // physical value of the number 1
   vec3 voxelSides;       // m
   int fieldLevel;        // of the textures
   ivec3 gridResolution;
   int fieldChannels;     // of a value: 1 or 3
-  ivec3 textureOf;       // of each channel: texture and component
-  int marksCount;        // 1: marks are numbers of items; 0: bits, 32 voxels along z in a word
+  ivec3 textureOf;       // texture of each channel; componentOf: its component
+  int marksCount;        // 1: marks are numbers of items; 0: bits, 32 voxels along z per word
   ivec3 componentOf;
 };
 float shortestSide() { return min(voxelSides.x, min(voxelSides.y, voxelSides.z)); }
@@ -34,7 +34,7 @@ const int kStack = 128;  // voxels in a texel: BinaryGrid
 layout(binding = 0) uniform usampler3D fieldMarks;
 #endif
 
-// One channel stands in all three components.
+// A field of one channel has its value in all three components.
 vec3 fieldValue(ivec3 voxel) {
 #if SOURCE == SOURCE_TEXELS
   vec3 value = vec3(texelOf(textureOf.x, voxel)[componentOf.x]);

@@ -1,12 +1,12 @@
-// The lobe of a voxel's spherical harmonics: the surface |p| = s max(0, f(p / |p|)) around its centre, f their luminance and s such that
-// the lobe reaches the nearest side of the voxel.
+// The lobe of a voxel's spherical harmonics: the surface |p| = s max(0, f(p / |p|)) around the voxel's centre. f is their luminance; s is
+// chosen so that the lobe reaches the nearest side of the voxel.
 #ifndef LUMIVOX_VOXEL_LOBE
 #define LUMIVOX_VOXEL_LOBE
 #include "common/spherical_harmonics.glsl"
 #include "toolkit/voxel_walk.glsl"
 
-// Whether a ray meets the lobe of the voxel that it walks through; then the harmonics in the direction of the first point, channel by
-// channel, and its brightness. Lobes that reach no further than `above` are left out.
+// Whether a ray hits the lobe of the voxel that it crosses. `seen`: rgb the harmonics in the direction of the first hit point, a its
+// brightness. Lobes whose largest value is at most `above` are skipped.
 bool meetsLobe(VoxelWalk walk, vec3 eye, vec3 direction, float above, out vec4 seen) {
   const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
   const int kSteps = 32, kHalvings = 12;
@@ -28,7 +28,7 @@ bool meetsLobe(VoxelWalk walk, vec3 eye, vec3 direction, float above, out vec4 s
   if (apart >= reach * reach) return false;
   float chord = sqrt(reach * reach - apart), from = max(walk.from, along - chord), to = min(walk.to, along + chord);
   if (from >= to) return false;
-  // Inside: |p|^2 below scale (mean |p| + slope . p).
+  // p is inside the lobe if |p|^2 <= scale (mean |p| + slope . p).
   float before = from, at = from;
   bool met = false;
   for (int i = 0; i <= kSteps && !met; ++i) {

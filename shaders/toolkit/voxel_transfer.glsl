@@ -1,4 +1,4 @@
-// A transfer function: what each voxel of a field emits and how opaque it is (thesis 004 Sec. 2.3), and the light of what a ray passes.
+// A transfer function: the emission and opacity of each voxel of a field (thesis 004 Sec. 2.3), and the light that a ray collects.
 // C++ side: VoxelTransfer in framework/include/lumivox/toolkit/voxel_view.h.
 #ifndef LUMIVOX_VOXEL_TRANSFER
 #define LUMIVOX_VOXEL_TRANSFER
@@ -11,7 +11,7 @@ layout(std140, binding = 2) uniform TransferParameters {
   float absorption;         // 1/m at the value 1
   int opacityComponent;
   int opacityLevel;
-  int isMultiplied;         // 1: colours are multiplied by the opacity already
+  int isMultiplied;         // 1: colours are pre-multiplied by the opacity
   int isDirection;          // 1: -1..1 are shown as 0..1
 };
 #if OPACITY == OPACITY_FIELD
@@ -26,7 +26,7 @@ vec3 rampOf(float share) {
   return mix(kStops[stop], kStops[stop + 1], place - float(stop));
 }
 
-// Emission, multiplied by the opacity, and the opacity of one length of the shortest side.
+// Emission, pre-multiplied by the opacity, and the opacity of a length equal to the shortest side of a voxel.
 vec4 transferOf(ivec3 voxel) {
   vec3 value = fieldValue(voxel);
   float size = fieldChannels == 3 ? length(value) : value.x;
@@ -42,10 +42,10 @@ vec4 transferOf(ivec3 voxel) {
   return vec4(colour * (isMultiplied != 0 ? 1.0 : opacity), opacity);
 }
 
-// So many lengths of a voxel, seen in front of what comes behind them.
+// Composites a step through a voxel behind what is seen so far; `lengths`: length of the step in shortest sides.
 void addLengths(inout vec4 seen, vec4 voxel, float lengths, float brightness) {
   if (voxel.a <= 0.0) {
-    // What does not absorb emits by its length.
+    // A voxel without absorption emits in proportion to the length.
     seen.rgb += (1.0 - seen.a) * brightness * lengths * voxel.rgb;
     return;
   }

@@ -1,17 +1,17 @@
-// From voxel to voxel along a ray, exactly (Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing"), and how the sides
-// of the voxels are shaded.
+// Exact traversal of the voxels along a ray (Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing"), and the shading of
+// the sides of voxels.
 #ifndef LUMIVOX_VOXEL_WALK
 #define LUMIVOX_VOXEL_WALK
 #include "toolkit/voxel_field.glsl"
 
-const int kWithin = 3;  // in place of a side's axis: the ray begins within the voxel
+const int kWithin = 3;  // instead of a side's axis: the ray begins inside the voxel
 
 struct VoxelWalk {
   bool inside;          // false: the ray has left the grid, or misses it
   ivec3 voxel;
-  int side;             // axis of the side by which the ray comes into the voxel
+  int side;             // axis of the side through which the ray enters the voxel
   float from, to;       // m along the ray, within the voxel
-  float end;            // of the grid, m
+  float end;            // where the ray leaves the grid, m
   ivec3 turn;
   vec3 next, perVoxel;  // m to the next planes, and from plane to plane
 };
@@ -20,7 +20,7 @@ int axisOfLeast(vec3 v) { return v.x <= v.y && v.x <= v.z ? 0 : v.y <= v.z ? 1 :
 
 // Begins `from` metres along the ray, or where the ray meets the grid.
 VoxelWalk startWalk(vec3 origin, vec3 direction, float from) {
-  const vec3 kLevel = vec3(1e-12);  // keeps products finite; a ray does not move along an axis by that much
+  const vec3 kLevel = vec3(1e-12);  // avoids division by 0; the motion along the axis stays negligible
   vec3 slope = mix(direction, kLevel, lessThan(abs(direction), kLevel));
   vec3 toLow = (gridLow - origin) / slope, toHigh = (gridLow + voxelSides * vec3(gridResolution) - origin) / slope;
   vec3 near = min(toLow, toHigh), far = max(toLow, toHigh);
@@ -52,8 +52,8 @@ void nextVoxel(inout VoxelWalk walk) {
   walk.to = max(min(walk.next[axisOfLeast(walk.next)], walk.end), walk.from);
 }
 
-// Brightness of the side by which a ray comes into a voxel at a point, so that voxels stand out from each other. Edges are darker where
-// they are wide enough for pixels that are so many metres wide there.
+// Brightness of the side through which a ray enters a voxel at a point, so that voxels stand out from each other. Edges are darker where
+// they are wide enough for the pixels; `pixelWidth`: width of a pixel at the point, m.
 float sideBrightness(int side, vec3 point, float pixelWidth, bool edges) {
   const float kSides[4] = float[4](0.8, 1.0, 0.65, 0.5);  // across x, y and z, and within
   if (!edges) return kSides[side];

@@ -18,7 +18,7 @@ void main() {
   vec3 most = vec3(0.0);
   for (; voxel[axis] < gridResolution[axis]; ++voxel[axis]) {
     vec3 value = abs(fieldValue(voxel));
-    // What is no number stays, so that it is seen.
+    // NaN is kept, so that it shows.
     for (int c = 0; c < 3; ++c)
       if (isnan(value[c]) || value[c] > most[c]) most[c] = value[c];
   }

@@ -1,7 +1,7 @@
 #version 450
-// A camera's view of the voxels of a field. Cubes: the first voxel on a pixel's ray that holds anything, with its value; the one around the
-// eye hides nothing. Lobes: the same, of spherical harmonics (voxel_lobe.glsl). Blended: all voxels, each by the ray's length in it, with a
-// transfer function.
+// A camera's view of the voxels of a field. Cubes: the value of the first occupied voxel on a pixel's ray; the voxel around the eye is
+// skipped. Lobes: the same for spherical harmonics (voxel_lobe.glsl). Blended: all voxels through a transfer function, each by the length
+// of the ray inside it.
 // C++ side: viewVoxels() in framework/include/lumivox/toolkit/voxel_view.h.
 #pragma lumivox axis SHAPE cubes lobes blended
 #pragma lumivox require SHAPE != lobes || SOURCE == texels
@@ -12,7 +12,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0, rgba32f) uniform writeonly image2D seenImage;  // cubes and lobes: value and brightness, which is 0 where none is seen
+layout(binding = 0, rgba32f) uniform writeonly image2D seenImage;  // cubes and lobes: rgb value, a brightness, 0 where no voxel is visible
 
 #if SHAPE == SHAPE_LOBES
 #include "toolkit/voxel_lobe.glsl"
@@ -36,7 +36,7 @@ void main() {
     if (meetsLobe(walk, eye, direction, above, seen)) break;
 #else
     vec3 value = fieldValue(walk.voxel);
-    // What is no number is drawn as well.
+    // NaN is drawn as well.
     if (all(lessThanEqual(abs(value), vec3(above)))) continue;
     seen = vec4(value, sideBrightness(walk.side, eye + walk.from * direction, pixelWidth * walk.from, true));
     break;

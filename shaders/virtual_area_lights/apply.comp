@@ -1,6 +1,6 @@
 #version 450
-// Sec. 3.2 steps 3 and 4: the averaged light of the points nearest to a pixel, or (AT vertices) as it came through the rasteriser, reflected
-// by the pixel's own normal and material (Eq. 10).
+// Sec. 3.2 steps 3 and 4: reflects the averaged light of the points nearest to a pixel, or (AT vertices) the light interpolated by
+// rasterisation, by the pixel's own normal and material (Eq. 10).
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis INTERPOLATE averaged plain
@@ -23,7 +23,7 @@ layout(binding = 2) uniform sampler2D gGeometricNormal;
 #endif
 #if DIFFUSE
 layout(binding = 3) uniform sampler2D gDiffuse;
-layout(binding = 4) uniform sampler2D diffuseLight;  // of points, or of pixels
+layout(binding = 4) uniform sampler2D diffuseLight;  // of points; AT vertices: of pixels
 layout(binding = 5) uniform sampler2D diffusePlace;
 layout(binding = 0, rgba32f) uniform writeonly image2D diffuseImage;
 #endif

@@ -1,15 +1,15 @@
 #version 450
-// Every light at every pixel, without occlusion: what the sparse points save and what they lose (Sec. 6, Fig. 5).
+// Every light at every pixel, without occlusion: the reference for the time and the error of sparse points (Sec. 6, Fig. 5).
 #pragma lumivox axis LOBE diffuse glossy
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "discs.glsl"
 
-const int kChunk = 128;  // as in gather.comp: a sum of its own keeps small addends
+const int kChunk = 128;  // as in gather.comp: a separate sum per chunk keeps small addends
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
-  int firstLight, lights;  // that this dispatch adds, of the buffer
-  int begins;              // whether nothing was added before
+  int firstLight, lights;  // range of lights in the buffer that this dispatch adds
+  int begins;              // 1: the first dispatch
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;

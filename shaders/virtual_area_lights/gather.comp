@@ -1,7 +1,7 @@
 #version 450
-// Sec. 3.2 step 1 (Eq. 6 to 8): all lights, seen from each point, as one: the sum of what the point reflects of them, and a mean of their
-// places. Sec. 4.2: in chunks, whose lights all points read together; METHOD says from where: a cache (published) or the memory of a work
-// group. PUBLISHED: Eq. 4 and 5 as they are printed.
+// Sec. 3.2 step 1 (Eq. 6 to 8): averages all lights, seen from each point, into one light: the sum of the light that the point reflects,
+// and a weighted mean of the positions. Sec. 4.2: in chunks whose lights all points read together, from a cache (METHOD cached, published)
+// or from shared memory (METHOD shared). PUBLISHED: Eq. 4 and 5 as printed.
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox axis METHOD cached shared
 #pragma lumivox axis PUBLISHED 0 1
@@ -15,17 +15,17 @@ const int kChunk = 128;  // K_cache, Sec. 4.2; gather.cpp
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
-  int firstLight, lights;   // that this dispatch adds, of the buffer
+  int firstLight, lights;   // range of lights in the buffer that this dispatch adds
   float smallWeight;        // epsilon of Eq. 7
-  int begins, ends;         // whether nothing was added before, and nothing is to come
-  float resolved;           // beta: an exponent's limit by the spacing of points; 0: none
+  int begins, ends;         // 1: the first dispatch; 1: the last dispatch
+  float resolved;           // beta: limits an exponent by the spacing of points; 0: no limit
   float factor;             // c of Eq. 5, PUBLISHED
-  float overlapping;        // lights that may lie upon each other, and shine together
+  float overlapping;        // number of lights that may lie at the same position, whose radiance adds up
 };
 layout(std430, binding = 0) readonly buffer SurfaceLights { SurfaceLight surfaceLights[]; };
-layout(binding = 0, rgba32f) uniform image2D sumImage;           // rgb of the light; w radiance of the brightest place
-layout(binding = 1, rgba32f) uniform image2D offsetImage;        // xyz of offsets by weight; w of weights
-layout(binding = 2, rgba32f) uniform image2D squareImage;        // xyz of their squares
+layout(binding = 0, rgba32f) uniform image2D sumImage;           // rgb sum of the light; w radiance of the brightest light
+layout(binding = 1, rgba32f) uniform image2D offsetImage;        // xyz sum of weighted offsets; w sum of weights
+layout(binding = 2, rgba32f) uniform image2D squareImage;        // xyz sum of weighted squared offsets
 layout(binding = 3, rgba32f) uniform writeonly image2D lightImage;
 layout(binding = 4, rgba32f) uniform writeonly image2D placeImage;
 
@@ -40,7 +40,7 @@ struct Receiver {
 };
 
 #if METHOD == METHOD_SHARED
-const int kTogether = 64;  // a light an invocation
+const int kTogether = 64;  // one light per invocation
 shared SurfaceLight near[kTogether];
 #endif
 
@@ -84,7 +84,7 @@ void add(Receiver point, SurfaceLight light, inout Sums sums) {
 #if PUBLISHED
   vec3 own = vec3(0.0);
 #else
-  // Of a disc about its middle: a quarter of its radius squared along each axis in it.
+  // Variance of a disc about its centre: a quarter of its squared radius along each axis in its plane.
   vec3 own = area / (4.0 * kPi) * (1.0 - light.normal.xyz * light.normal.xyz);
 #endif
   sums.square += weight * (offset * offset + own);
@@ -139,7 +139,7 @@ void main() {
   }
   vec3 offset = all.offset.w > 0.0 ? all.offset.xyz / all.offset.w : vec3(0.0);
   vec3 variance = all.offset.w > 0.0 ? max(all.square / all.offset.w - offset * offset, vec3(0.0)) : vec3(0.0);
-  float radius = 2.0 * sqrt(max(variance.x, max(variance.y, variance.z)));  // Sec. 3.3: of an even disc its own
+  float radius = 2.0 * sqrt(max(variance.x, max(variance.y, variance.z)));  // Sec. 3.3: for a uniform disc, its radius
 #if LOBE == LOBE_GLOSSY
   all.light.w = reflects ? 1.0 + resolvedExponent(point.exponent, dot(offset, offset), pointSpacing, resolved) : 0.0;
 #endif

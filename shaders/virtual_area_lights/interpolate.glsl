@@ -1,29 +1,30 @@
-// Sec. 3.2 step 3 (Eq. 12, 13): the averaged lights of the nearest points as one.
+// Sec. 3.2 step 3 (Eq. 12, 13): interpolates the averaged lights of the nearest points.
 #ifndef LUMIVOX_INTERPOLATE
 #define LUMIVOX_INTERPOLATE
 #define POINT_CANDIDATES
 #include "surface_points.glsl"
 #include "light.glsl"
 
-const int kMostNeighbours = 32;  // of the pass 'points'
+const int kMostNeighbours = 32;  // limit of the pass 'points'
 layout(constant_id = 0) const int neighbours = 8;
 
-// By growing distances. All places are known when the program is linked, so that loops unroll and everything stays in registers.
+// The nearest points, by increasing distance. All indices are known when the program is linked, so that
+// loops unroll and the arrays stay in registers.
 struct Nearest {
   uint points[kMostNeighbours];
   float distancesSquared[kMostNeighbours];
   int count;
-  float farthestSquared;  // of the last of them
+  float farthestSquared;  // squared distance of the last point
 };
 
-// What is seen.
+// The visible surface.
 struct SeenSurface {
   vec3 position, normal;
   float model;
 };
 
 void keep(inout Nearest nearest, uint point, float distanceSquared) {
-  // Points come by growing numbers, so that of equal distances the first stays.
+  // Points come in increasing order, so that of equally distant points the first is kept.
   for (int i = neighbours - 1; i > 0; --i) {
     bool moves = nearest.distancesSquared[i - 1] > distanceSquared, enters = nearest.distancesSquared[i] > distanceSquared;
     nearest.points[i] = moves ? nearest.points[i - 1] : enters ? point : nearest.points[i];
@@ -35,8 +36,8 @@ void keep(inout Nearest nearest, uint point, float distanceSquared) {
   }
 }
 
-// The nearest points of the same model whose normals are off by no more than the angle of cosine `alike`, none farther than where all are
-// listed, unless it is the only one; with an exponent of 0 or more only those that reflect by it.
+// The nearest points of the same model whose normals have at least the cosine `alike` to the surface's. None but the nearest is farther
+// than pointFarthest, up to which the candidates are complete. With an exponent of 0 or more, only glossy points of this exponent count.
 Nearest nearestAlike(SeenSurface seen, float alike, float exponent) {
   const float kNone = 3.4e38;
   Nearest nearest;
@@ -67,8 +68,8 @@ Nearest nearestAlike(SeenSurface seen, float alike, float exponent) {
   return nearest;
 }
 
-// Those of the same side. Where these all lie on surfaces across an edge, which light nothing here (Eq. 12: a foot of a wall among the points
-// of the floor), those that face as what is seen does.
+// The nearest points on the same side. If these all lie on surfaces across an edge, which have no weight here (Eq. 12: the foot of a wall
+// among points of the floor), the nearest points with similar normals.
 Nearest nearestPoints(SeenSurface seen, float exponent) {
   Nearest nearest = nearestAlike(seen, kOtherSideCosine, exponent);
   for (int i = 0; i < neighbours; ++i)
@@ -78,8 +79,8 @@ Nearest nearestPoints(SeenSurface seen, float exponent) {
   return nearest;
 }
 
-// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal, and a neighbour across an edge
-// counts nothing: by rounding it would be all that counts where the only one that faces alike is the last.
+// Weight of a neighbour by Eq. 12, or by its normal only. Distances that differ by rounding count as equal. A neighbour across an edge has
+// weight 0: otherwise its rounding error would be the only weight if the only neighbour with a similar normal is the farthest.
 float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float farthestSquared, bool byDistance) {
   const float kRounding = 1e-5;
   float alike = dot(seen.normal, texelFetch(pointNormal, pointTexel(point), 0).xyz);
@@ -89,16 +90,16 @@ float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float
   return near > kRounding ? alike * near : 0.0;
 }
 
-// `glossy`: the light of points that reflect nothing towards the camera (w = 0) does not count, and as `seenFromPoints` offsets from the
-// points are averaged. Deviates from Eq. 13, which averages places: what a lobe catches of an area wider than itself moves along with the
-// point. Where all neighbours lie on one side, above all where surfaces meet, a mean of places is out of the lobe of what is seen there.
-// `plain`: of what points reflect, in place of their lights.
+// `glossy`: points that reflect nothing towards the camera (w = 0) do not count. `seenFromPoints`: averages offsets from the points.
+// Deviates from Eq. 13, which averages positions: the part of a large area that a lobe sees moves along with the point. If all neighbours
+// lie on one side, above all where surfaces meet, a mean of positions lies outside the lobe of the visible surface. `plain`: averages the
+// light that the points reflect, instead of their lights.
 AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, sampler2D places, bool glossy, bool seenFromPoints,
                            bool plain) {
   vec4 light = vec4(0.0);
-  vec3 offset = vec3(0.0);  // from what is seen, so that nothing is lost far from the origin
+  vec3 offset = vec3(0.0);  // from the visible surface, so that no precision is lost far from the origin
   float weights = 0.0;
-  // By Eq. 12; where all weights are 0 by the normals alone; where these are too, the nearest.
+  // First by Eq. 12; if all weights are 0, by the normals only; if these are 0 too, the nearest point.
   for (int attempt = 0; attempt < 3 && weights <= 0.0; ++attempt)
     for (int i = 0; i < neighbours; ++i) {
       if (i >= nearest.count) continue;

@@ -1,6 +1,7 @@
 #version 450
-// Sec. 3.2 step 2 (Eq. 11): the averaged light made so strong that the local model (Eq. 10) gives back, at the point, what all lights give.
-// The division has no bound; without PUBLISHED there are two: some times the light itself, and the radiance of the brightest light.
+// Sec. 3.2 step 2 (Eq. 11): scales the averaged light so that at the point the local model (Eq. 10) gives the reflected light of all
+// lights. The division is unbounded. Without PUBLISHED there are two limits: `amplification` times the
+// light, and the radiance of the brightest light.
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox axis PUBLISHED 0 1
 layout(local_size_x = 64) in;
@@ -10,12 +11,12 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
-  float amplification;  // most
+  float amplification;  // largest factor on the light
 };
 layout(binding = 0) uniform sampler2D lights;      // of this lobe
 layout(binding = 1) uniform sampler2D places;
 layout(binding = 2) uniform sampler2D brightest;   // w: radiance of the brightest light that arrives
-layout(std430, binding = 0) writeonly buffer Kept { float keptShares[]; };  // of what Eq. 11 gives, what is left
+layout(std430, binding = 0) writeonly buffer Kept { float keptShares[]; };  // share of the light of Eq. 11 that the limits keep
 layout(binding = 0, rgba32f) uniform writeonly image2D normalisedImage;
 
 void main() {
@@ -38,7 +39,7 @@ void main() {
   }
   vec3 normalised = vec3(0.0);
 #if PUBLISHED
-  // As it is printed, as far as a float holds it.
+  // As printed, limited to the range of a float.
   if (local > 0.0) normalised = dividedAsPublished(light.rgb * distanceSquared, local);
 #else
   if (local > 0.0) {

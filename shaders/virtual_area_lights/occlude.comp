@@ -1,5 +1,5 @@
 #version 450
-// Sec. 3.3: how much of the sphere that stands for the averaged light is hidden from each point by the discs of all others.
+// Sec. 3.3: the share of the sphere that represents the averaged light which the discs of all other points occlude, for each point.
 #pragma lumivox axis COMBINE product sum nearest mask
 #pragma lumivox axis DISCS points surfaces  // of all points, or of other surfaces
 layout(local_size_x = 64) in;
@@ -9,9 +9,9 @@ layout(local_size_x = 64) in;
 #include "squares.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  int firstOccluder, occluders;  // that this dispatch looks at
-  int begins, ends;              // whether none was looked at before, and none is to come
-  int published;                 // the sphere's form factor as printed
+  int firstOccluder, occluders;  // range of occluders of this dispatch
+  int begins, ends;              // 1: the first dispatch; 1: the last dispatch
+  int published;                 // 1: the sphere's form factor as printed
 };
 layout(binding = 0) uniform sampler2D lights;
 layout(binding = 1) uniform sampler2D places;
@@ -21,7 +21,8 @@ layout(std430, binding = 1) readonly buffer Surfaces { SurfaceLight surfaces[]; 
 layout(std430, binding = 0) buffer States { uvec2 states[]; };  // between dispatches
 layout(binding = 0, rgba32f) uniform writeonly image2D occludedImage;
 
-// What is covered so far. x: product: what is open; sum: what is covered; nearest: what the nearest covers, y at which distance squared.
+// The occlusion so far. product: x the open share. sum: x the covered share. nearest: x the share that the nearest occluder covers, y its
+// squared distance. mask: covered bits.
 #if COMBINE == COMBINE_MASK
 #define State uvec2
 #else
@@ -69,16 +70,16 @@ void main() {
       vec3 toDisc = discPosition(i) - position;
       float discDistanceSquared = dot(toDisc, toDisc);
       float above = dot(toDisc, normal);
-      // Most are below the surface, or behind the light's middle.
+      // Most discs are below the surface or behind the light's centre.
       if (!(above > 0.0) || discDistanceSquared >= distanceSquared) continue;
       float discDistance = sqrt(discDistanceSquared);
       vec3 direction = toDisc / discDistance;
-      // The side that is seen counts: the other side of an open surface is a point of its own, and a body would hide twice.
+      // Only front faces occlude: the back of an open surface has a point of its own, and a solid object would occlude twice.
       float cosAtDisc = -dot(direction, discNormal(i));
       if (!(cosAtDisc > 0.0)) continue;
       Square disc = squareOf(direction, discWidth(discArea(i), cosAtDisc, discDistanceSquared) * above / discDistance,
                              tangent, binormal);
-      // From the near side of the sphere to its middle less and less.
+      // Between the near side of the sphere and its centre, occlusion decreases to 0.
       float before = radius > 0.0 ? min(1.0, (distance - discDistance) / radius) : 1.0;
 #if COMBINE == COMBINE_MASK
       disc.side *= sqrt(before);

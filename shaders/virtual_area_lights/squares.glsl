@@ -1,4 +1,4 @@
-// Sec. 3.3: what shines and what stands before it, as squares on the unit circle under a point (Fig. 3).
+// Sec. 3.3: lights and occluders as squares in the unit disc of a point's projected hemisphere (Fig. 3).
 #ifndef LUMIVOX_SQUARES
 #define LUMIVOX_SQUARES
 #include "common/constants.glsl"
@@ -8,7 +8,7 @@ struct Square {
   float side;
 };
 
-// Eq. 14: the middle of what is seen, projected on the circle; its area is pi times the form factor (Nusselt).
+// Eq. 14: the projected direction is the centre of the square; its area is pi times the form factor (Nusselt).
 Square squareOf(vec3 direction, float formFactor, vec3 tangent, vec3 binormal) {
   return Square(vec2(dot(direction, tangent), dot(direction, binormal)), sqrt(kPi * formFactor));
 }
@@ -20,7 +20,7 @@ float coveredShare(Square light, Square occluder) {
   return light.side > 0.0 ? overlap.x * overlap.y / (light.side * light.side) : 0.0;
 }
 
-// The 8 x 8 bits of `light`, row by row in two words, whose middles `occluder` covers.
+// The bits of the 8 x 8 cells of `light`, row by row in two words, whose centres `occluder` covers.
 uvec2 coveredBits(Square light, Square occluder) {
   vec2 low = occluder.centre - light.centre + 0.5 * (light.side - vec2(occluder.side));
   ivec2 first = ivec2(clamp(ceil(8.0 * low / light.side - 0.5), vec2(0.0), vec2(8.0)));
@@ -34,8 +34,8 @@ uvec2 coveredBits(Square light, Square occluder) {
   return row & until & ~before;
 }
 
-// Form factor of a sphere without the horizon: cos r^2 / d^2, and 1 from inside. Deviates: the print takes that of a disc, which is too
-// small by 1 + r^2 / d^2 (`published`).
+// Form factor of a sphere, without clipping at the horizon: cos r^2 / d^2, and 1 inside the sphere. Deviates: the print uses the form
+// factor of a disc, which is too small by the factor 1 + r^2 / d^2 (`published`).
 float sphereFormFactor(float cosine, float radiusSquared, float distanceSquared, bool published) {
   if (published) return max(0.0, cosine) * radiusSquared / (distanceSquared + radiusSquared);
   return distanceSquared <= radiusSquared ? 1.0 : max(0.0, cosine) * radiusSquared / distanceSquared;

@@ -1,24 +1,24 @@
-// Densities integrated from a place outwards: exactly near by, so that smoke far thicker than a voxel has the depths of a surface.
+// Integrals of densities from a point outwards, exact near the point, so that smoke that is opaque within a voxel shades like a surface.
 #ifndef LUMIVOX_SMOKE_CELLS
 #define LUMIVOX_SMOKE_CELLS
 #include "common/media.glsl"
 
-const float kOpaque = 100.0;  // optical depth behind which nothing can be seen
-const float kLeastTransmittance = 1e-37;  // near the smallest normal number of single precision; its logarithm is finite
+const float kOpaque = 100.0;  // optical depth behind which nothing is visible
+const float kLeastTransmittance = 1e-37;  // near the smallest normal float, so that its logarithm is finite
 
-const int kAllCells = 1 << 20;  // the range ends before
+const int kAllCells = 1 << 20;  // more cells than any range has
 
 #if MEDIUM == MEDIUM_VARYING
-// Integral of a varying medium's density over range.x .. range.y of a ray, through at most `mostCells` of the cubes between the centres of
-// voxels, m; it ends at `reached`. Within a cube a trilinear density is a cubic polynomial of the distance, which the two points of Gauss and
-// Legendre integrate exactly. Cubes are met in the order of Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing".
+// Integral of a heterogeneous medium's density along a ray, m, from range.x to `reached`: to range.y, or through `mostCells` of the cubes
+// between the centres of voxels. Within a cube a trilinear density is a cubic polynomial of the distance, which two-point Gauss-Legendre
+// quadrature integrates exactly. Traversal by Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing".
 float integralOverCells(int i, vec3 origin, vec3 direction, vec2 range, int mostCells, out float reached) {
   const float kGauss = 0.57735027;  // 1 / sqrt(3)
   reached = range.x;
   vec3 rate = direction / media[i].gridLowVoxel.w;
   rate = mix(rate, vec3(1e-30), equal(rate, vec3(0.0)));
   vec3 place = (origin + direction * range.x - media[i].gridLowVoxel.xyz) / media[i].gridLowVoxel.w - 0.5;
-  vec3 next = range.x + (floor(place) + vec3(greaterThan(rate, vec3(0.0))) - place) / rate;  // where the ray leaves along each axis
+  vec3 next = range.x + (floor(place) + vec3(greaterThan(rate, vec3(0.0))) - place) / rate;  // exit from the cube along each axis
   float sum = 0.0;
   for (int cell = 0; cell < mostCells && reached < range.y; ++cell) {
     float end = clamp(min(min(next.x, next.y), next.z), reached, range.y);
@@ -32,8 +32,8 @@ float integralOverCells(int i, vec3 origin, vec3 direction, vec2 range, int most
   return sum;
 }
 
-// Optical depth of all media from a place to the end of a ray: exact over the first cells, then by the midpoint rule with a step a voxel
-// but at most `mostSteps`.
+// Optical depth of all media from a point to the end of a ray: exact over the first cells, then by the midpoint rule with one step per
+// voxel but at most `mostSteps`.
 vec3 depthFrom(vec3 origin, vec3 direction, float reach, int mostCells, int mostSteps) {
   vec3 depth = evenDepth(origin, direction, reach);
   for (int i = 0; i < mediumCount; ++i) {

@@ -1,5 +1,5 @@
 #version 450
-// Units of particles per voxel become densities.
+// Converts units of particles per voxel to densities.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {

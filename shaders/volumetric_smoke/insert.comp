@@ -1,7 +1,7 @@
 #version 450
-// Thesis 004, Sec. 4.5, Listing 4.50: every particle adds its share to the voxels of the grid. Deviates from the listing: a particle is a
-// cloud, not a point, and shares out its mass among the voxels of it that are free; with `counts` it is one in its voxel, as published.
-// Integers add up to the same bits in any order.
+// Thesis 004, Sec. 4.5, Listing 4.50: every particle adds its mass to the voxels of the grid. Deviates: a particle is a cloud instead of a
+// point, and distributes its mass over the free voxels of the cloud. With `counts` it adds one to its voxel, as published. Integer sums
+// have the same bits in any order.
 #pragma lumivox axis SPACE 0 1
 #pragma lumivox axis DEPOSIT clouds counts
 layout(local_size_x = 64) in;
@@ -17,14 +17,14 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 spaceLow;  // m
   float spaceVoxelSize;
 };
-layout(std430, binding = 0) readonly buffer Offsets { float offsets[]; };  // x, y, z of each, in turn
+layout(std430, binding = 0) readonly buffer Offsets { float offsets[]; };  // x, y, z per particle
 layout(binding = 0, r32ui) uniform uimage3D lowWords;
 layout(binding = 1, r32ui) uniform uimage3D highWords;
 #if SPACE
 layout(binding = 0) uniform sampler3D occupancy;
 #endif
 
-const uint kUnits = 16777216u;  // of one particle, 2^24: a share of it is exact in single precision
+const uint kUnits = 16777216u;  // mass of one particle, 2^24: shares of it are exact in single precision
 
 bool isFree(ivec3 voxel) {
 #if SPACE
@@ -43,7 +43,7 @@ float cloud(ivec3 voxel, vec3 centre) {
   return inside * inside * inside;
 }
 
-// 64-bit sums: a carry goes to the higher word, whichever of the additions it was that overflowed.
+// 64-bit sums: the addition that overflows the low word adds the carry to the high word.
 void add(ivec3 voxel, uint units) {
   uint before = imageAtomicAdd(lowWords, voxel, units);
   if (before + units < before) imageAtomicAdd(highWords, voxel, 1u);
@@ -75,9 +75,9 @@ void main() {
           densest = voxel;
         }
       }
-  if (most <= 0.0) return;  // inside something solid
+  if (most <= 0.0) return;  // no free voxel: inside solid geometry
 
-  // The remainder of rounding goes to the densest voxel, so that the mass is whole.
+  // The remainder of rounding goes to the densest voxel, so that no mass is lost.
   uint given = 0u;
   for (int z = first.z; z <= last.z; ++z)
     for (int y = first.y; y <= last.y; ++y)

@@ -1,7 +1,7 @@
 #version 450
-// Transmittance of the varying media between every point of a grid and every light sample, one slab of the texture a light: what a march
-// from each sample of each ray would find, once a frame. Not the depth: between a point in thick smoke and one outside of it, half of the
-// light is a better guess than half of the depth, which lets nothing through.
+// Transmittance of the heterogeneous media between every point of a grid and every light sample, one slab of the texture per light,
+// computed once per frame instead of a march from each sample of each ray. It stores transmittance rather than optical depth: between a
+// point in thick smoke and a point outside, half of the light is a better interpolation than half of the depth, which transmits nothing.
 #pragma lumivox axis MEDIUM even varying
 #pragma lumivox require MEDIUM == varying
 #include "common/media.glsl"

@@ -1,6 +1,6 @@
 #version 450
-// Thesis 004, Sec. 4.5, Listings 4.51 to 4.53: light that the media scatter towards the camera once, and what they leave of the light
-// behind them. Deviates from Listing 4.52, which adds up scattering alone: extinction to the light and to the eye is part of the integral.
+// Thesis 004, Sec. 4.5, Listings 4.51 to 4.53: single scattering by the media towards the camera, and the transmittance of the media.
+// Deviates from Listing 4.52, which sums scattering only: here extinction towards the light and towards the eye is part of the integral.
 #pragma lumivox axis MEDIUM even varying
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis LIGHT_DEPTH march volume
@@ -18,15 +18,15 @@ layout(constant_id = 0) const int stepCount = 32;
 layout(constant_id = 1) const int lightSteps = 32;
 layout(constant_id = 2) const int dithered = 1;
 layout(constant_id = 3) const int phaseIsPublished = 0;
-layout(constant_id = 4) const int exactCells = 8;  // 0: densities are looked at once a step, as published
+layout(constant_id = 4) const int exactCells = 8;  // 0: densities are sampled once per step, as published
 
 layout(std140, binding = 0) uniform Parameters {
   ivec2 size;      // samples
   int lightCount;
   int gridSide;    // points along a side of a slab of the transmittances to the lights
-  vec3 gridLow;    // m, box of them
+  vec3 gridLow;    // box of these points, m
   vec3 gridHigh;
-  float nearReach; // m, way from a place towards a light that is integrated before they are looked up
+  float nearReach; // m; distance towards a light that is integrated before the transmittances are read
 };
 #if LIGHT_DEPTH == LIGHT_DEPTH_VOLUME
 layout(binding = 12) uniform sampler3D lightTransmittance;
@@ -34,8 +34,8 @@ layout(binding = 12) uniform sampler3D lightTransmittance;
 layout(binding = 0, rgba32f) uniform writeonly image2D scatteredImage;      // w: where the ray leaves the media, m
 layout(binding = 1, rgba32f) uniform writeonly image2D transmittanceImage;
 
-// Start of the first step as a share of it: the ordered 4 x 4 pattern of Bayer 1973, "An optimum method for two-level rendition", which
-// counts to 15/16. Deviates from Listing 4.51: 0.25 where 0.22 is printed, and half an entry more, so that the mean is one half.
+// Offset of the first sample as a share of the step: the ordered 4 x 4 pattern of Bayer 1973, "An optimum method for two-level rendition",
+// which counts to 15/16. Deviates from Listing 4.51: 0.25 where 0.22 is printed, and half an entry is added, so that the mean is one half.
 float dither(ivec2 texel) {
   if (dithered == 0) return 0.5;
   int x = texel.x & 3, y = texel.y & 3, exclusive = x ^ y;
@@ -50,7 +50,8 @@ vec3 depthToLight(int i, vec3 posWorld) {
   float reach;
   wayToLight(lights[i], posWorld, direction, reach);
 #if LIGHT_DEPTH == LIGHT_DEPTH_VOLUME
-  // The grid is too coarse for the surface of thick smoke: the way through what is near is integrated, and the rest looked up behind it.
+  // The grid is too coarse for the surface of thick smoke: the near part of the path is integrated, and
+  // the transmittance of the rest is read.
   vec3 depth = evenDepth(posWorld, direction, reach);
   float way = min(nearReach, reach), reached;
   for (int m = 0; m < mediumCount; ++m) {
@@ -72,9 +73,9 @@ vec3 depthToLight(int i, vec3 posWorld) {
   return opticalDepth(posWorld, direction, reach, lightSteps);
 }
 
-// Where a step is looked at for a light, and the factor from the irradiance there to what counts for the step. The inverse square of the
-// distance to a light is integrated exactly, and the place is chosen evenly in the angle that the light sees (Kulla & Fajardo 2012,
-// "Importance sampling techniques for path tracing in participating media", Sec. 4.1): steps may be longer than the way to the light.
+// Sample position of a step for a light, and `factor` on the irradiance there. The inverse square of the distance to the light is
+// integrated exactly, and the position is uniform in the angle seen from the light (Kulla & Fajardo 2012, "Importance sampling techniques
+// for path tracing in participating media", Sec. 4.1): steps may be longer than the distance to the light.
 float placeInStep(LightSample light, vec3 direction, float near, float stride, float share, out float factor) {
   factor = 1.0;
   if (light.kind == kLightDirectional) return near + share * stride;
@@ -88,8 +89,8 @@ float placeInStep(LightSample light, vec3 direction, float near, float stride, f
   return place;
 }
 
-// Integral of exp(-depth) over a step of unit length along which the depth goes from a to b at an even rate: exact for any depth, so that
-// one step may be as thick as it likes.
+// Integral of exp(-depth) over a step of unit length along which the depth changes linearly from a to
+// b: exact, so that a step may have any optical depth.
 vec3 meanTransmittance(vec3 a, vec3 b) {
   vec3 change = b - a;
   vec3 exact = (exp(-a) - exp(-b)) / mix(change, vec3(1.0), lessThan(abs(change), vec3(1e-2)));
@@ -99,8 +100,8 @@ vec3 meanTransmittance(vec3 a, vec3 b) {
 }
 #endif
 
-// Length of a step inside a medium times the mean density there, m. Of media that vary: exact over the cells at the step's far end, where
-// the depths that are compared with it are taken, and by one look into the rest.
+// Length of a step inside a medium times the mean density there, m. For heterogeneous media: exact over the cells at the step's far end,
+// where the depth to the light is evaluated, and by one sample over the rest.
 float amountInStep(int i, vec3 direction, float near, float stride, float start) {
   if (isEven(i)) {
     vec2 inside = insideMedium(i, eyeWorld, direction, near + stride);
@@ -127,7 +128,7 @@ void main() {
   for (int l = 0; l < lightCount; ++l) {
     LightSample light = lights[l];
     vec3 atNear, atFar;  // depths to the light
-    bool known = false;  // that at the near end: it is that at the far end of the step before
+    bool known = false;  // atNear is known: the depth at the far end of the previous step
     passed = vec3(0.0);
 #endif
     for (int s = 0; s < stepCount && stride > 0.0 && any(lessThan(passed, vec3(kOpaque))); ++s) {

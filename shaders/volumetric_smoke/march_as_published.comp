@@ -1,6 +1,6 @@
 #version 450
-// Thesis 004, Sec. 4.5, Listings 4.51 to 4.53 to the letter; march.comp is ours. Where the ray meets nothing it ends behind the media: the
-// print takes such a pixel's position from an empty g-buffer.
+// Thesis 004, Sec. 4.5, Listings 4.51 to 4.53 as printed; march.comp is our version. Deviates: a ray that meets no surface ends behind the
+// media; the print reads the position of such a pixel from an empty g-buffer.
 #pragma lumivox axis MEDIUM even varying
 #define SHADOW_VIEWS
 #include "range.glsl"
@@ -15,13 +15,13 @@ layout(constant_id = 3) const int phaseIsPublished = 1;
 layout(std140, binding = 0) uniform Parameters {
   ivec2 size;        // samples
   int lightCount;
-  float unit;        // m, of the printed lengths: half the longest side of the scene
+  float unit;        // m, unit of the printed lengths: half the longest side of the scene
   vec3 sceneCentre;  // m, origin of the printed positions
-  vec4 amountPerDensity[2];  // of each medium: particles in a voxel; of media without particles 1
+  vec4 amountPerDensity[2];  // per medium: particles in a voxel; 1 for media without particles
 };
 layout(binding = 0, rgba32f) uniform writeonly image2D scatteredImage;  // w: where the ray leaves the media, m
 
-// Listing 4.51: counted from the lower left, the column chooses the row of the matrix.
+// Listing 4.51: pixels count from the lower left, and their column selects a printed row of the matrix, in GLSL a column.
 float dither(ivec2 texel) {
   float slip = ditherIsPublished != 0 ? 0.22 : 0.25;
   mat4 pattern = mat4(0.0, 0.5, 0.125, 0.625, 0.75, slip, 0.875, 0.375, 0.1875, 0.6875, 0.0625, 0.5625, 0.9375, 0.4375, 0.8125, 0.3125);
@@ -42,7 +42,8 @@ float amountAt(vec3 posWorld) {
   return clamp(amount, 0.0, 1.0);
 }
 
-// Listing 4.53. Where the cosine of no unit vectors makes the base negative the power is undefined, and nothing is added.
+// Listing 4.53. The printed cosine of vectors without unit length can make the base negative; the power
+// is then undefined, and nothing is added.
 float scattering(float cosine, float g) {
   float base = 1.0 + g * g - 2.0 * g * cosine;
   if (base <= 0.0) return 0.0;
@@ -68,7 +69,7 @@ void main() {
         if (visibility(light, posWorld, toLight, toLight) <= 0.0) continue;
         float cosine = dot(direction, toLight);
         if (cosineIsPublished != 0) {
-          bool directional = light.kind == kLightDirectional;  // which has no place: a unit towards it
+          bool directional = light.kind == kLightDirectional;  // no position: one unit towards it
           vec3 lightPosition = directional ? toLight : (light.position - sceneCentre) / unit;
           cosine = dot(direction * (rayLength / unit), lightPosition);
         }

@@ -1,5 +1,5 @@
 #version 450
-// Thesis 004, Sec. 4.5: the particle system, here without a state: any frame can be made alone.
+// Thesis 004, Sec. 4.5: the particle system. Deviates: it has no state, so that any frame can be rendered alone.
 #include "common/particles.glsl"
 
 layout(local_size_x = 64) in;
@@ -15,7 +15,7 @@ layout(std140, binding = 0) uniform Parameters {
   float drift;  // m/s
   float rise;   // m/s
 };
-layout(std430, binding = 0) writeonly buffer Offsets { float offsets[]; };  // x, y, z of each, in turn
+layout(std430, binding = 0) writeonly buffer Offsets { float offsets[]; };  // x, y, z per particle
 
 void main() {
   uint index = listIndex();

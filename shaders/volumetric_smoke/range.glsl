@@ -5,14 +5,14 @@
 
 layout(std140, binding = 1) uniform View {
   vec3 eyeWorld;
-  int pixelsPerSample;  // 1: a sample a pixel; 2: a sample for 2 x 2 pixels
+  int pixelsPerSample;  // 1: one sample per pixel; 2: one sample per 2 x 2 pixels
   vec3 cornerDirection; // of the image's upper left corner; the forward component is 1
-  vec3 perColumn;       // what a pixel to the right adds
+  vec3 perColumn;       // change of direction per pixel to the right; perRow: downwards
   vec3 perRow;
 };
 layout(binding = 0) uniform sampler2D gPosition;
 
-// The pixel that a sample looks through: another of the 2 x 2 in each of four neighbours.
+// The pixel of a sample's ray: neighbouring samples use different pixels of their 2 x 2 pixels.
 ivec2 pixelOf(ivec2 texel) {
   ivec2 pixel = pixelsPerSample == 1 ? texel : 2 * texel + ivec2(texel.y & 1, texel.x & 1);
   return min(pixel, textureSize(gPosition, 0) - 1);

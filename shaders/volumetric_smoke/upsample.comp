@@ -1,20 +1,20 @@
 #version 450
-// Thesis 004, Sec. 4.5: bilateral upsampling (Kopf, Cohen, Lischinski & Uyttendaele 2007, "Joint bilateral upsampling"). Samples of the
-// march are blended over four by four of them, one period of the dither pattern, with weights that keep to rays which end alike.
+// Thesis 004, Sec. 4.5: bilateral upsampling (Kopf, Cohen, Lischinski & Uyttendaele 2007, "Joint bilateral upsampling"). Blends 4 x 4
+// samples of the march, one period of the dither pattern, with weights that favour rays that end at a similar distance.
 #include "common/joint_bilateral.glsl"
 #include "range.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {
-  float similarity;  // difference of the ends of two rays, as a share of their length, at which they are no longer alike
+  float similarity;  // relative difference of the ends of two rays at which they are no longer similar
 };
 layout(binding = 1) uniform sampler2D scatteredSamples;
 layout(binding = 2) uniform sampler2D transmittanceSamples;
 layout(binding = 0, rgba32f) uniform writeonly image2D scatteredImage;
 layout(binding = 1, rgba32f) uniform writeonly image2D transmittanceImage;
 
-const float kLeast = 0.02;  // of a sample as far away as the filter reaches
+const float kLeast = 0.02;  // weight, along an axis, of a sample at the filter's radius
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -36,7 +36,7 @@ void main() {
         vec4 value = texelFetch(scatteredSamples, texel, 0);
         vec2 away = abs(vec2(pixelOf(texel) - pixel));
         float difference = (value.w - range.y) / (similarity * range.y);
-        // Where nothing is alike the nearest in depth wins, because the weight never vanishes.
+        // If no sample is similar, the nearest in depth wins, because the weight never vanishes.
         float alike = 1.0 / (1.0 + difference * difference);
         float weight = tent(away.x, radius, kLeast) * tent(away.y, radius, kLeast) * max(alike * alike * alike * alike, 1e-20);
         sum += weight * value.rgb;

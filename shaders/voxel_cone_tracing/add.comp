@@ -1,14 +1,16 @@
 #version 450
-// The average of what the fragments of a voxel reflect.
-// Deviates from thesis 004 Listing 4.9: its running average in 8 bits depends on the order of the writes and overflows past 255 fragments.
-// Here each fragment adds its share of a mean of integers, in units of the brightest fragment of its voxel (common/integer_mean.glsl).
+// Averages the radiance that the fragments of a voxel reflect.
+// Deviates from thesis 004 Listing 4.9, whose running average in 8 bits depends on the order of the writes and overflows past 255
+// fragments. Here each fragment adds its share of an integer mean, in units of the brightest fragment of its voxel
+// (common/integer_mean.glsl).
 //
-// DIRECTIONS: an average for each face of the voxel, weighted by the cosine between its normal and that of the fragment, so that the two
-// sides of a wall stay apart. The back of a fragment counts for a face only where no other looks that way (backWeight): of a wall with two
-// faces in one voxel the insides are dark. The fragment's opacity along an axis is its coverage by the share of that axis in its normal,
-// over the largest of the three shares: a sheet is closed along the axis that it faces, and open along itself (alongAll: closed all round).
+// DIRECTIONS: one average per face of the voxel, weighted by the cosine between the normals of face and fragment, so that the two sides of
+// a wall stay separate. The back of a fragment has the small weight backWeight, so that it counts only for a face without fronts: the
+// inside of a wall with both surfaces in one voxel is dark. A fragment's opacity along an axis is its coverage times the component of its
+// normal along the axis over the largest component: a sheet is opaque along the axis that it faces and open along itself (alongAll: opaque
+// along all axes).
 //
-// SAMPLED: opacity is that of the samples of a voxel's sides that any fragment covers, beside the sum of the coverages.
+// SAMPLED: `opacity` also stores the covered samples of the voxel's sides, beside the sum of the coverages.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis SAMPLED 0 1
 #pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)
@@ -21,17 +23,17 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Averages {
   ivec3 brickCount;
-  int coverageSum;   // DIRECTIONS; 1: the coverages of a voxel add up, to 1 at most; 0: the largest counts
-  float backWeight;  // DIRECTIONS: of a fragment's back in the mean of a face, where fronts have 1
-  int alongAll;      // DIRECTIONS; 1: a fragment closes its voxel along all axes; 0: along those that it faces
+  int coverageSum;   // DIRECTIONS: opacity of a voxel: 1: the sum of its coverages, at most 1; 0: the largest
+  float backWeight;  // DIRECTIONS: weight of a fragment's back in the mean of a face; fronts have weight 1
+  int alongAll;      // DIRECTIONS: 1: a fragment is opaque along all axes; 0: along those that it faces
 };
-layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each fragment or of each side of one, W/(sr m^2)
+layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // r, g, b per fragment or per side of a fragment, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #include "sums.glsl"
 
 vec3 radianceAt(uint first) { return vec3(radiances[first], radiances[first + 1], radiances[first + 2]); }
 
-// Radiance in units of the brightest, and the weight of both in the average.
+// Weighted radiance in units of the brightest fragment, and the weight.
 vec4 partOf(vec3 radiance, float brightest, float weight) {
   return vec4(brightest > 0.0 ? min(radiance / brightest, 1.0) : vec3(0.0), 1.0) * weight;
 }
@@ -40,7 +42,7 @@ vec4 partOf(vec3 radiance, float brightest, float weight) {
 layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
 
 #if SAMPLED
-layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  // of each fragment, eight bits across x, y and z
+layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  // per fragment: eight bits across each of x, y and z
 #endif
 
 void main() {
@@ -57,7 +59,7 @@ void main() {
   for (int axis = 0; axis < 3; ++axis) {
     float opacity = alongAll != 0 ? coverage : coverage * cosines[axis] / most;
 #if SAMPLED
-    // Sums of multiples of 256 leave the eight bits alone.
+    // The sum is in multiples of 256, so that it leaves the lowest eight bits to the samples.
     atomicAdd(directions[place].opacity[axis], uint(opacity * part * kSampledFixedPoint + 0.5) << kSideSamples);
     atomicOr(directions[place].opacity[axis], sideMasksOf[index] >> kSideSamples * uint(axis) & kAllSides);
 #else

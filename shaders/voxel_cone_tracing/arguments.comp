@@ -1,10 +1,10 @@
 #version 450
-// Turns the number of bricks into the arguments of dispatches over their voxels, so that the count never travels to the host.
+// Turns the number of bricks into the arguments of indirect dispatches over their voxels, without a read-back.
 layout(local_size_x = 1) in;
 #include "common/list.glsl"
 
 layout(std430, binding = 6) readonly buffer BrickTotals { uint listed; };
-layout(std430, binding = 7) writeonly buffer BrickCount { uint brickCountAndGroups[]; };  // bricks; x, y, z for the levels 0, 1 and 2
+layout(std430, binding = 7) writeonly buffer BrickCount { uint brickCountAndGroups[]; };  // bricks; x, y, z of dispatches, levels 0 to 2
 
 void main() {
   brickCountAndGroups[0] = listed;

@@ -1,6 +1,6 @@
 #version 450
-// Forgets which voxels were occupied in the bricks of changed cells, and keeps whether any was, in place of the bricks' sums: what has
-// become empty has to be found too.
+// Clears the occupied voxels of the bricks in changed cells. The place of a brick's sums is replaced by whether any voxel was occupied, so
+// that bricks that have become empty are found too.
 #include "bricks.glsl"
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "toolkit/changed_cells.glsl"

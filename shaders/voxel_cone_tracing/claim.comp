@@ -1,8 +1,7 @@
 #version 450
-// Lists the occupied bricks, and gives each the places for the sums of its occupied voxels. The order is that of the threads: no result
-// depends on it.
+// Lists the occupied bricks, and allocates the sums of their occupied voxels. The order depends on the threads; no result depends on it.
 //
-// CHANGED: only bricks of changed cells get places, whose sums begin at 0; they are listed too where they were occupied before
+// CHANGED: only bricks in changed cells get sums, which begin at 0. These bricks are listed also if they were occupied only before
 // (changed_bricks.comp).
 #pragma lumivox axis CHANGED 0 1
 #pragma lumivox axis DIRECTIONS 0 1

@@ -1,9 +1,9 @@
-// A coarse voxel as it is seen along an axis: the children of a column are composited front to back from either side, and the columns are
-// averaged (Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3). Including files say before what a child looks like, vec4 higherFace(int
-// axis, ivec3 child) and lowerFace.
+// The two faces of a coarse voxel across an axis: the children of a column are composited front to back from either side, and the columns
+// are averaged (Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3). Including files first define the faces of a child, vec4
+// higherFace(int axis, ivec3 child) and lowerFace.
 #include "common/coarser_voxel.glsl"
 
-// Means over the columns along an axis.
+// Means over the columns along an axis: `higher` seen from the higher side, `lower` from the lower side.
 void lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio, out vec4 higher, out vec4 lower) {
   int side = (axis + 1) % 3, up = (axis + 2) % 3;
   higher = vec4(0.0);

@@ -1,4 +1,4 @@
-// Images of the six faces of voxels, of whatever float format, by the outward normals of the faces.
+// Images of the six faces of voxels, of any float format, named by the outward normals of the faces.
 #ifndef LUMIVOX_FACE_IMAGES
 #define LUMIVOX_FACE_IMAGES
 layout(binding = 0) uniform writeonly image3D positiveXImage;

@@ -1,5 +1,5 @@
 // The light that arrives at a fragment, on the side of its normal and behind it: Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1,
-// Listing 4.8. Included after the local size, which is along x alone.
+// Listing 4.8. Included after the local size, which is along x only.
 // C++ side: DirectLight in techniques/voxel_cone_tracing/direct_light.h.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
@@ -27,15 +27,15 @@ layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m
   float voxelSize;  // m
   int lightCount;
-  float mostRadiance;   // W/(sr m^2): what no voxel of this size can reflect, however near a light is
+  float mostRadiance;   // W/(sr m^2): limit of the radiance of a voxel of this size, however near a light is
   int twoSided;         // 1: light on the back side counts as well
-  int mediumSteps;      // most steps through a medium that varies, towards a light
+  int mediumSteps;      // step limit through a heterogeneous medium, towards a light
   ivec3 brickCount;
-  float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
-  int lightSamples;     // points of a fragment's plane in its voxel that are lit
-  int emissive;         // 1: surfaces that emit light do so in the voxels as well
+  float ambient;        // irradiance of all surfaces in addition to the lights, W/m^2
+  int lightSamples;     // number of points of a fragment's plane inside its voxel that are lit
+  int emissive;         // 1: emission of surfaces is stored in the voxels as well
 };
-layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
+layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // r, g, b per fragment or per side of one, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 
 // The voxel of a fragment: its low corner in world space, and in w its width, m.
@@ -62,9 +62,9 @@ void lightPoint(KnownLight known, vec3 posWorld, vec3 normal, inout vec3 front, 
 }
 #endif
 
-// Irradiance by the lights of the sides of which nothing is known, W/m^2; of the others 0: at the fragment's point; or the mean over points of
-// its plane in its voxel, so that the edge of a shadow may lie in it. They fill the side of the voxel that the plane faces evenly (R2: Roberts
-// 2018).
+// Irradiance by the lights, W/m^2, of the sides without known light; 0 for the other sides. It is taken at the fragment's point, or as the
+// mean over points of the fragment's plane inside its voxel, so that a shadow edge through the voxel is averaged. These points are evenly
+// distributed over the side of the voxel that the plane faces (R2: Roberts 2018).
 void arrivingAt(VoxelFragment fragment, KnownLight known, out vec3 front, out vec3 back) {
   front = vec3(0.0);
   back = vec3(0.0);

@@ -1,5 +1,5 @@
 #version 450
-// Marks the voxels that fragments lie in, a bit each.
+// Sets the bits of the voxels that contain fragments.
 #include "bricks.glsl"
 
 layout(local_size_x = 64) in;

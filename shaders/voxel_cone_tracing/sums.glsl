@@ -1,6 +1,6 @@
-// Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
-// eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included
-// after the local size, which is along x alone.
+// The place of an occupied voxel's sums. A dense grid has bricks of 4 x 4 x 4 voxels (including files first declare `bricks` and
+// `brickCount`). An octree has eight sums per leaf, for the voxels of the leaf itself. The levels of a clipmap lie side by side in one
+// dense grid. Included after the local size, which is along x only.
 #pragma lumivox axis PLACES grid octree clipmap
 #pragma lumivox require !CHANGED || PLACES != clipmap
 #include "toolkit/taken_fragments.glsl"
@@ -10,7 +10,7 @@
 
 uint sumsAt(ivec3 voxel) {
   uint brick = rankedBrick(mortonOf(voxel >> 1), octreeDepth);
-  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return 0u;  // there was too little room, and the frame is not shown
+  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return 0u;  // too little room: the frame is rendered again
   ivec3 own = voxel & 1;
   return 8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(own.x | own.y << 1 | own.z << 2);
 }

@@ -1,6 +1,6 @@
 #version 450
-// Light is carried from a surface of each path to the one before it, as published (thesis Gomes 2015, Sec. 3.2.4): one layer of the
-// textures of record.comp. From the first surface it arrives at the visible one.
+// Carries light from a surface of each path back to the previous surface, as published (thesis Gomes 2015, Sec. 3.2.4): one layer of the
+// textures of record.comp per dispatch. From the first surface, light arrives at the visible surface.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED
@@ -10,12 +10,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform CarriedLayer {
   int layer;
-  int isLast;  // 1: nothing has been carried yet
+  int isLast;  // 1: the last layer, which comes first: nothing has been carried yet
 };
 layout(binding = 1, rgba32f) uniform readonly image2DArray vertexPlace;
 layout(binding = 3, rgba32f) uniform readonly image2DArray vertexLight;
 layout(binding = 4, rgba32f) uniform readonly image2DArray vertexReflection;
-layout(binding = 2, rgba32f) uniform image2D carried;  // rgb radiance that leaves the surface of the layer behind, back along the path
+layout(binding = 2, rgba32f) uniform image2D carried;  // rgb radiance from the surface of the next layer, back along the path
 layout(binding = 7, rgba32f) uniform readonly image2D firstWeights;
 
 void main() {

@@ -1,5 +1,5 @@
 #version 450
-// The sums as the frame before left them.
+// Copies the sums of the last frame.
 #include "sums.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

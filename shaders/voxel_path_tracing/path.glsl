@@ -1,5 +1,6 @@
-// Paths from surface to surface through bits: Thiedemann, Henrich, Grosch & Mueller 2011; thesis Gomes 2015, Sec. 3.2.4. Bits say where a
-// ray ends. Reflective shadow maps say how bright it is there, and what reflects it; in shadow the voxels' averages do.
+// Light paths through binary voxels: Thiedemann, Henrich, Grosch & Mueller 2011; thesis Gomes 2015, Sec. 3.2.4. The bits give the hit point
+// of a ray. Reflective shadow maps give the direct light and the material there; in shadow, the
+// averaged attributes of the voxels give the material.
 #pragma lumivox axis MAP 0 1
 #pragma lumivox axis GLOSSY 0 1      // surfaces have a Phong lobe
 #pragma lumivox axis ATTRIBUTES 0 1  // paths go on from surfaces in shadow
@@ -11,20 +12,20 @@
 #include "common/back_projection.glsl"
 #endif
 
-layout(constant_id = 2) const int normalOfVoxels = 0;  // 1: directions from lit surfaces too are about the voxel's normal, as printed
-layout(constant_id = 3) const int pushes = 1;          // 1: a ray that begins in a set voxel is moved along the normal out of it
-layout(constant_id = 4) const int roulette = 0;        // 1: dim paths end by chance
+layout(constant_id = 2) const int normalOfVoxels = 0;  // 1: lit surfaces too use the voxel's normal for new directions, as printed
+layout(constant_id = 3) const int pushes = 1;          // 1: the origin of a ray in a set voxel moves out of it along the normal
+layout(constant_id = 4) const int roulette = 0;        // 1: Russian roulette ends dim paths
 
 layout(std140, binding = 1) uniform Path {
   vec3 environment;  // W/(sr m^2)
-  float offset;      // start of a ray along the normal, in the reach of the surface's plane
+  float offset;      // of a ray's origin along the normal, in units of reachOfPlane()
   vec3 eye;          // posWorld
   float reach;       // of a ray, voxels
   uvec2 seed;
-  uint number;       // of the path of each pixel, over all frames that accumulate
-  int bounce;        // surfaces that the path has left: 1 for the ray from the visible surface
-  int bounces;       // at most
-  int raysAtOnce;    // that trace.comp follows, from that surface on
+  uint number;       // index of the path of each pixel, counted over all accumulated frames
+  int bounce;        // number of surfaces that the path has left: 1 for the ray from the visible surface
+  int bounces;       // limit of `bounce`
+  int raysAtOnce;    // number of rays that trace.comp follows from that surface on
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -46,14 +47,14 @@ layout(binding = 13) uniform sampler3D voxelNormal;
 
 struct Surface {
   vec3 place;     // voxels
-  vec3 normal;    // unit, to the side of the path
-  vec3 outwards;  // unit: along which rays that leave it begin
+  vec3 normal;    // unit, on the side of the path
+  vec3 outwards;  // unit: direction in which the origins of leaving rays are offset
   vec3 toViewer;  // unit: back along the path
   vec3 diffuse;   // albedo
   vec4 specular;  // Phong albedo, exponent in w
 };
 
-// Where a path goes on. Both weights are divided by the density of the direction.
+// The next direction of a path. Both weights are divided by the density of the direction.
 struct Choice {
   vec3 direction;
   float diffuse;  // cosine / pi
@@ -62,14 +63,15 @@ struct Choice {
 
 vec3 reflectedBy(Surface surface, Choice choice) { return surface.diffuse * choice.diffuse + surface.specular.rgb * choice.glossy; }
 
-// How often the Phong lobe is taken. The bound keeps the weights of the cosine at 4: filters may blend them among pixels.
+// Probability of sampling the Phong lobe. It is at most 0.75, which limits the diffuse weight to 4,
+// because filters may blend it among pixels.
 float shareOfLobe(Surface surface) {
   const vec3 kOne = vec3(1.0);
   float diffuse = dot(surface.diffuse, kOne), glossy = dot(surface.specular.rgb, kOne);
   return glossy > 0.0 ? min(glossy / (diffuse + glossy), 0.75) : 0.0;
 }
 
-// About the mirror direction, with the density (n + 1) / (2 pi) cos^n.
+// A direction about the mirror direction, with the density (n + 1) / (2 pi) cos^n.
 vec3 lobeDirection(vec2 point, float exponent, vec3 mirror) {
   float cosMirror = pow(1.0 - point.x, 1.0 / (exponent + 1.0)), angle = 2.0 * kPi * point.y;
   float sine = sqrt(max(1.0 - cosMirror * cosMirror, 0.0));
@@ -77,17 +79,18 @@ vec3 lobeDirection(vec2 point, float exponent, vec3 mirror) {
   return normalize(sine * (cos(angle) * tangent + sin(angle) * cross(mirror, tangent)) + cosMirror * mirror);
 }
 
-// Independent of each other: `use` 0 for a direction, 1 for the end by chance.
+// Independent random words: `use` 0 for a direction, 1 for Russian roulette.
 uvec4 noiseOf(ivec2 at, int fromSurface, int use) {
   return hash4(uvec4(uint(at.x) | uint(at.y) << 16u, number, uint(2 * fromSurface + use), seed.x ^ (seed.y * 2654435769u)));
 }
 
-// One direction of the sum of both lobes, weighed by the density of their mixture (Veach 1997, Sec. 9.2.4). The first one follows R2, as
-// rays of a single bounce do; further ones are independent of it, or paths would see only pairs of directions that the sequence makes.
+// Samples a direction from both lobes, weighted by the density of their mixture (Veach 1997, Sec. 9.2.4). The first direction follows R2,
+// as do the rays of a single bounce. Further directions are independent: otherwise paths would only
+// have pairs of directions from the sequence.
 Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   uvec4 noise = noiseOf(at, fromSurface, 0);
   if (fromSurface == 0) {
-    // Which lobe it is follows the multiples of the golden ratio, so that each lobe gets its share of few paths too.
+    // The choice of the lobe follows multiples of the golden ratio, so that each lobe gets its share even of few paths.
     uvec4 turn = hash4(uvec4(at, seed));
     noise = uvec4(wordsOfR2(number, turn.xy), number * 2654435769u + turn.z, 0u);
   }
@@ -101,7 +104,7 @@ Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   float exponent = surface.specular.w;
   if (unitInterval(noise.zw).x < share) result.direction = lobeDirection(point, exponent, mirror);
   float cosTheta = dot(surface.normal, result.direction), cosMirror = max(dot(mirror, result.direction), 0.0);
-  // Below the horizon a lobe is lost, as in the reference.
+  // Directions below the horizon carry no light, as in the reference.
   if (cosTheta <= 0.0) return Choice(result.direction, 0.0, 0.0);
   float lobe = exponent > 0.0 ? pow(cosMirror, exponent) : (cosMirror > 0.0 ? 1.0 : 0.0);
   lobe /= 2.0 * kPi;
@@ -119,9 +122,9 @@ bool isSet(vec3 place) {
   return (stack[voxel.z >> 5 & 3] >> (voxel.z & 31) & 1u) != 0u;
 }
 
-// Where rays that leave a surface begin, in voxels.
+// The origin of rays that leave a surface, in voxels.
 vec3 startOf(Surface surface, bool mayPush) {
-  const float kStep = 0.25;  // within two voxels
+  const float kStep = 0.25;  // voxels; at most eight steps, two voxels
   vec3 start = surface.place + surface.outwards * (offset * reachOfPlane(surface.outwards));
   if (!mayPush || pushes == 0 || !isSet(start)) return start;
   for (int i = 1; i <= 8; ++i) {
@@ -131,7 +134,7 @@ vec3 startOf(Surface surface, bool mayPush) {
   return start;
 }
 
-// False: nothing is visible there.
+// The visible surface of a pixel; false: there is none.
 bool visibleSurface(ivec2 at, out Surface surface) {
   vec4 position = texelFetch(gPosition, at, 0);
   surface = Surface((position.xyz - gridLow) / voxelSize, texelFetch(gNormal, at, 0).xyz, texelFetch(gGeometricNormal, at, 0).xyz,
@@ -143,7 +146,7 @@ bool visibleSurface(ivec2 at, out Surface surface) {
   return position.w > 0.0;
 }
 
-// Where a ray ends: the light that comes from there, W/(sr m^2), and the surface.
+// The end of a ray: radiance from there, W/(sr m^2), and the surface.
 struct Meeting {
   vec3 light;
   bool isSurface;
@@ -151,7 +154,7 @@ struct Meeting {
 };
 
 #if MAP
-// What a light makes the surface at a texel of its view send along the path.
+// Radiance along the path from the surface at a texel of a light's view, due to this light.
 vec3 sentBy(LightSample light, ivec3 texel, vec3 toViewer) {
   vec3 sent = diffuseOfTexel(texel);
 #if GLOSSY
@@ -200,7 +203,7 @@ Meeting meetingOf(BitHit hit) {
   return result;
 }
 
-// The surface that a ray meets, or the environment.
+// The surface that a ray hits, or the environment.
 Meeting followed(vec3 start, vec3 direction) {
   BitHit hit = firstBit(start, direction, reach, resolution);
   if (hit.found && hit.t <= reach) return meetingOf(hit);
@@ -208,7 +211,7 @@ Meeting followed(vec3 start, vec3 direction) {
   return Meeting(!hit.found && leavesGrid() <= reach ? environment : vec3(0.0), false, none);
 }
 
-// What a path that would go on with such a share of the light carries then; zero: it ends.
+// The throughput of a path after Russian roulette; zero: the path ends.
 vec3 survived(ivec2 at, vec3 throughput, int fromSurface) {
   if (roulette == 0) return throughput;
   float chance = min(max(throughput.r, max(throughput.g, throughput.b)), 1.0);

@@ -1,19 +1,19 @@
 #version 450
-// One ray of one path for each pixel, as published: every surface of the path stays in textures (thesis Gomes 2015, Fig. 41), one layer
-// each, and bring_back.comp carries the light back over them.
+// Traces one ray of one path per pixel, as published: textures store every surface of the path (thesis Gomes 2015, Fig. 41), one layer per
+// surface, and bring_back.comp carries the light back over them.
 #include "path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 1, rgba32f) uniform image2DArray vertexPlace;       // xyz voxels; w 1: a surface
 layout(binding = 2, rgba32f) uniform image2DArray vertexNormal;      // xyz
-layout(binding = 3, rgba32f) uniform image2DArray vertexLight;       // rgb direct light that it sends back, or the environment
-layout(binding = 4, rgba32f) uniform image2DArray vertexReflection;  // rgb albedo; then what a ray from there is multiplied by
+layout(binding = 3, rgba32f) uniform image2DArray vertexLight;       // rgb direct light reflected along the path, or the environment
+layout(binding = 4, rgba32f) uniform image2DArray vertexReflection;  // rgb albedo; then the weight of the ray from there
 #if GLOSSY
 layout(binding = 5, rgba32f) uniform image2DArray vertexSpecular;    // Phong albedo and exponent
 layout(binding = 6, rgba32f) uniform image2DArray vertexToViewer;    // xyz back along the path
 #endif
-layout(binding = 7, rgba32f) uniform image2D firstWeights;           // of the first surface: r what arrives, g what its lobe reflects
+layout(binding = 7, rgba32f) uniform image2D firstWeights;           // of the visible surface: r for arriving light, g for its Phong lobe
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);

@@ -1,5 +1,5 @@
-// Sums over all paths of a pixel, of this frame and of those before it. Layers of `sums`: what arrives, and what the Phong lobe reflects,
-// each with the rest that its sum has lost, so that the number of paths does not wear it down (Kahan 1965).
+// Sums over all paths of a pixel, of this and the earlier frames. Layers of `sums`: arriving light, and light that the Phong lobe reflects,
+// each followed by the compensation of its rounding error, so that the error does not grow with the number of paths (Kahan 1965).
 const int kArriving = 0, kReflected = 2;
 
 layout(binding = 0, rgba32f) uniform image2DArray sums;

@@ -1,6 +1,6 @@
 #version 450
-// Some rays of one path for each pixel, one after the other, with what the path is known by between dispatches: where its next ray begins
-// and goes, and what its light is multiplied by. Light is added as it is met.
+// Traces some rays of one path per pixel, one after another. Between dispatches, textures keep the state of the path: origin and direction
+// of its next ray, and its throughput. Light is added at each hit.
 #pragma lumivox axis ARRIVING 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED

@@ -1,13 +1,13 @@
 #version 450
-// One fragment per triangle and voxel that it touches, appended to a list (Crassin & Green 2012, Sec. 22.3.2; thesis 004 Listing 4.4).
-// Deviates: which voxels is decided by the exact overlap of triangle.glsl in place of the bounding box of the thesis.
+// Appends one fragment per triangle and voxel that it touches to a list (Crassin & Green 2012, Sec. 22.3.2; thesis 004 Listing 4.4).
+// Deviates: the exact overlap test of triangle.glsl decides which voxels are touched, instead of the bounding box of the thesis.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
 #include "fragment_list.glsl"
 
-// 1: every voxel that the triangle touches in depth; 0: only the one at the middle of the column.
+// 1: every voxel of the column that the triangle touches; 0: only the voxel that contains the triangle at the column's centre.
 layout(constant_id = 0) const int depthRange = 1;
 
 #include "common/column_sample.glsl"

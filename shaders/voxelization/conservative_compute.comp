@@ -1,9 +1,8 @@
 #version 450
-// Conservative voxelization in the spirit of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without the rasteriser.
-// LARGE 0: one thread a triangle. It tests all voxels of the triangle's bounds first and notes them as bits, so that the threads that run in
-// lockstep share the tests, and then writes what it found, so that they share the writing. A triangle of more voxels than there are bits is
-// put aside in rows of tiles.
-// LARGE 1: one work group a row of tiles of 8 x 8 columns, one thread a column: no triangle waits for one thread, however large it is
+// Conservative voxelization in the manner of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without rasterisation.
+// LARGE 0: one thread per triangle. It first tests all voxels of the triangle's bounding box and records the results as bits, then writes
+// the fragments, so that threads in lockstep do not diverge. A triangle with more voxels than bits is put aside, as rows of tiles.
+// LARGE 1: one work group per row of tiles of 8 x 8 columns, one thread per column, so that no large triangle occupies a single thread
 // (Sec. 4.3 of the paper splits by tiles as well).
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
@@ -18,12 +17,12 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std140, binding = 1) uniform Limits { int rowCapacity; };
-// 1: every voxel that the triangle touches in depth; 0: only the one at the middle of the column.
+// 1: every voxel of the column that the triangle touches; 0: only the voxel that contains the triangle at the column's centre.
 layout(constant_id = 0) const int depthRange = 1;
 
 // Triangles of one draw, for one work group: first index, number of triangles, object, material. In a uniform block, so that a group loads
-// its object and material once and not per thread.
-const int kMostBatches = 1024;  // 16 KiB, what OpenGL guarantees
+// its object and material once instead of once per thread.
+const int kMostBatches = 1024;  // 16 KiB, the size of a uniform block that OpenGL guarantees
 layout(std140, binding = 2) uniform Batches { uvec4 batches[kMostBatches]; };
 // Rows of tiles that were put aside: first index, batch, first column along y.
 struct TileRow {
@@ -39,13 +38,13 @@ layout(std430, binding = 9) buffer Rows {
 #include "common/column_sample.glsl"
 
 const int kTile = 8;
-const int kBits = 64;             // voxels of a triangle that one thread notes
+const int kBits = 64;             // largest number of voxels of a triangle for one thread
 
 void put(uint index, ColumnSample s, ivec3 voxel, int axis) {
   if (index < uint(capacity)) fragments[index] = fragmentAt(s, voxel, axis);
 }
 
-// All voxels of one column.
+// Appends the fragments of all touched voxels of one column.
 void appendColumn(TriangleCorners t, Overlap o, MaterialData material, VoxelFragment base, ivec2 column) {
   if (!touchesColumn(o, column)) return;
   ColumnSample s = sampleColumn(t.corners, t.normals, t.texcoords, material, base, column);
@@ -77,7 +76,7 @@ void main() {
 
 #else
 
-// Bit i of a triangle's notes is voxel low + (x, y, z), with i = (z * size.y + y) * size.x + x.
+// Bit i of a triangle is voxel low + (x, y, z), with i = (z * size.y + y) * size.x + x.
 ivec3 voxelOfBit(int bit, ivec3 low, vec3 size) {
   float i = float(bit) + 0.5;
   float row = floor(i / size.x), slice = floor((row + 0.5) / size.y);
@@ -117,7 +116,7 @@ void putRowsAside(uint firstIndex, uint batch, TriangleCorners t, Overlap o, Mat
       rows[first + uint(i)] = TileRow(firstIndex, batch, y);
       continue;
     }
-    // No room: slow, but nothing is lost.
+    // No room to put the row aside: this thread does it, slowly but completely.
     for (int line = y; line < min(y + kTile, o.high.y + 1); ++line)
       for (int x = o.low.x; x <= o.high.x; ++x) appendColumn(t, o, material, base, ivec2(x, line));
   }

@@ -1,5 +1,5 @@
 #version 450
-// The fragments of another list become the first ones of this list.
+// Copies the fragments of another list to the front of this list.
 #include "fragment_list.glsl"
 
 layout(local_size_x = 64) in;

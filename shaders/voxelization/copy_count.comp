@@ -1,5 +1,5 @@
 #version 450
-// A number of items travels on the device alone.
+// Copies a number of items on the device, without a read-back.
 layout(local_size_x = 1) in;
 
 layout(std430, binding = 0) readonly buffer From { uint fromCount; };

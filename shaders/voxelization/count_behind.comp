@@ -1,10 +1,10 @@
 #version 450
-// How many items lie behind the first ones, as the arguments of a dispatch over them (finish.comp).
+// The number of items after the first ones, and the arguments of an indirect dispatch over them (finish.comp).
 layout(local_size_x = 1) in;
 #include "common/list.glsl"
 
 layout(std430, binding = 0) readonly buffer First { uint firstItems; };
-layout(std430, binding = 1) readonly buffer Count { uint itemCount; };  // of all, those that there is no room for too
+layout(std430, binding = 1) readonly buffer Count { uint itemCount; };  // all items, including those beyond the capacity
 layout(std430, binding = 2) writeonly buffer Behind {
   uint itemsBehind;
   uint groupsX, groupsY, groupsZ;

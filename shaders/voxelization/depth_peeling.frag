@@ -1,6 +1,6 @@
 #version 450
-// Depth peeling (Everitt 2001) as Li et al. 2005 use it: what lies no deeper than the layer before is peeled off, and the depth test finds
-// the nearest of the rest. A pixel keeps what its fragment will need.
+// Depth peeling (Everitt 2001) as used by Li et al. 2005: surfaces no deeper than the previous layer are discarded, and the depth test
+// finds the nearest of the rest. Each pixel stores the attributes of its voxel fragment.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis FIRST 0 1
@@ -13,7 +13,7 @@ layout(location = 0) out uvec4 surface;  // normal, two words of albedo and cove
 layout(location = 1) out float depthInGrid;  // voxels
 
 void main() {
-  // Textures are sampled before anything is thrown away: the derivatives that choose their mip are undefined behind a discard.
+  // Textures are sampled before any discard, after which the derivatives that select the mip level are undefined.
   VoxelFragment fragment = sampleView();
 #if !FIRST
   if (gl_FragCoord.z <= texelFetch(layerBefore, ivec2(gl_FragCoord.xy), 0).r) discard;

@@ -1,11 +1,11 @@
 #version 450
-// The pixels of a layer become fragments.
+// Appends a fragment for each pixel of a layer.
 #include "fragment_list.glsl"
 #include "view_axis.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// The last layer along each axis that shows something, counted from 1.
+// The last layer along each axis that contains a surface, counted from 1.
 layout(std430, binding = 9) buffer Deepest { uint deepest[3]; };
 layout(std140, binding = 0) uniform Layer { int layer; };
 layout(binding = 0) uniform sampler2D layerDepth;

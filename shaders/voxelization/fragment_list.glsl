@@ -1,4 +1,4 @@
-// A list of fragments that is appended to: who takes an index by adding to fragmentCount writes where it is below the capacity.
+// A list of fragments to append to: an invocation reserves an index by adding to fragmentCount, and writes if it is below the capacity.
 #include "common/voxel.glsl"
 #include "list_grid.glsl"
 layout(std430, binding = 7) buffer Count { uint fragmentCount; };

@@ -1,4 +1,4 @@
-// Corners of triangles in voxels. Including files declare the scene's geometry and the grid (gridLow, voxelSize) before.
+// Corners of triangles, in voxels. Including files first declare the scene's geometry and the grid (gridLow, voxelSize).
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 
 // Corner `k` of a triangle of the scene's index buffer.

@@ -1,4 +1,4 @@
-// The grid of a list of fragments, and how many fit into the list.
+// The grid of a list of fragments, and the capacity of the list.
 #ifndef LUMIVOX_LIST_GRID
 #define LUMIVOX_LIST_GRID
 layout(std140, binding = 8) uniform ListGrid {

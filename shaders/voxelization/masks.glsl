@@ -1,4 +1,4 @@
-// Which voxels with holes have their bit set.
+// Decides which partly covered voxels have their bit set.
 #include "common/random.glsl"
 
 // C++ side: Masks in techniques/voxelization/bits/bit_voxelizer.h.
@@ -8,8 +8,8 @@ layout(std140, binding = 1) uniform MaskRule {
 };
 const int kMasksAny = 0, kMasksHalf = 1, kMasksRandom = 2;
 
-// By chance as often as the voxel is covered: a number of the voxel's own, so that the same ones are set whatever the order of a list, and
-// a lattice keeps its mean opacity.
+// kMasksRandom sets the bit with a probability equal to the coverage, so that a lattice keeps its mean opacity. The random number belongs
+// to the voxel, so that the result does not depend on the order of a list.
 bool isSet(ivec3 voxel, float coverage) {
   if (maskRule == kMasksAny) return true;
   if (maskRule == kMasksHalf) return coverage >= 0.5;

@@ -1,9 +1,9 @@
 #version 450
-// Opacity by multisampling (3D clipmaps; thesis 004 Sec. 3.5.2): the samples of a pixel that a triangle covers lie in one to three voxels of the
-// column; their number is what the triangle covers of each.
-// TARGET list: a fragment for each voxel, with that coverage. TARGET masks: the samples themselves, as bits of the voxel's three sides; they
-// are projected into the two other planes too, and the surface is made thicker along its normal's axis there.
-// The pixels of a list may be smaller than a voxel (adaptive supersampling, Sec. 3.5.2): each adds its share of the voxel's side.
+// Opacity by multisampling (3D clipmaps; thesis 004 Sec. 3.5.2): the samples of a pixel that a triangle covers lie in one to three voxels
+// of the column; the number of samples in a voxel gives its coverage by the triangle.
+// TARGET list: one fragment per voxel, with this coverage. TARGET masks: the samples, as bits of the voxel's three sides; samples are also
+// projected into the other two planes, with the surface thickened along its dominant axis.
+// The pixels of TARGET list may be smaller than a voxel (adaptive supersampling, Sec. 3.5.2): each covers its share of the voxel's side.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis TARGET list masks
@@ -32,7 +32,7 @@ const vec2 cornerTexcoords[3] = vec2[3](vec2(0.0), vec2(0.0), vec2(0.0));
 void main() {
   uint covered = uint(gl_SampleMaskIn[0]) & ((1u << sampleCount) - 1u);
   ivec2 pixel = ivec2(gl_FragCoord.xy), column = pixel / scale;
-  vec2 corner = vec2(pixel - column * scale);  // of the pixel in its column, in pixels
+  vec2 corner = vec2(pixel - column * scale);  // corner of the pixel in its column, in pixels
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (covered == 0u || normal.z == 0.0) discard;
   MaterialData material = materials[materialIndex];

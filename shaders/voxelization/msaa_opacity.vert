@@ -1,5 +1,6 @@
 #version 450
-// 3D clipmaps (thesis 004 Sec. 3.5.2): each triangle is projected along the dominant axis of its normal, as it is: its samples are counted.
+// 3D clipmaps (thesis 004 Sec. 3.5.2): each triangle is projected along the dominant axis of its normal, without enlargement, because its
+// covered samples are counted.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
@@ -28,5 +29,5 @@ void main() {
   vec2 plane = corners[gl_VertexID - 3 * triangle].xy;
   float side = float(max(resolution.x, max(resolution.y, resolution.z)));
   gl_Position = vec4(2.0 * plane.x / side - 1.0, 1.0 - 2.0 * plane.y / side, 0.5, 1.0);
-  if (scaleOf(corners) != scale) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // another viewport's: nothing of it is drawn
+  if (scaleOf(corners) != scale) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // drawn in the viewport of another scale: culled here
 }

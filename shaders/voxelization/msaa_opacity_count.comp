@@ -1,6 +1,6 @@
 #version 450
-// Bit counts of a voxel's sides to its opacity (thesis 004 Sec. 3.5.2).
-layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are what memory holds together
+// The opacity of a voxel from the bit counts of its sides (thesis 004 Sec. 3.5.2).
+layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are contiguous in memory
 
 layout(std140, binding = 0) uniform Sides {
   int sampleCount;

@@ -1,11 +1,11 @@
-// Geometry seen along an axis of the grid, one pixel a column of voxels: what slicing, depth peeling and multisampled opacity draw.
-// Positions are in voxels and permuted so that z is the axis of the view.
+// Orthogonal projection of the geometry along an axis of the grid, one pixel per column of voxels, for slicing, depth peeling and
+// multisampled opacity. Positions are in voxels, permuted so that z is the view axis.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
 #include "view_axis.glsl"
 
-// Depth peeling compares depths that different programs made of the same triangle: they must be the same to the bit.
+// Depth peeling compares depths that different programs computed for the same triangle: they must be equal to the bit.
 invariant gl_Position;
 layout(location = 0) out vec3 posView;
 layout(location = 1) out vec3 normalWorld;
@@ -19,6 +19,6 @@ void main() {
 #if TEXTURES || MASKS
   texcoord = vertexTexcoord();
 #endif
-  // Row 0 is the top of a target: y turns over, so that pixel (x, y) is column (x, y).
+  // Row 0 is the top of a render target: y is flipped, so that pixel (x, y) is column (x, y).
   gl_Position = vec4(2.0 * posView.x / side - 1.0, 1.0 - 2.0 * posView.y / side, (posView.z - depthLow) / (depthHigh - depthLow), 1.0);
 }

@@ -1,7 +1,7 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.1: N random points on each triangle, uniform over its area, mark the voxels that they fall into.
-// Deviates: one thread a triangle in a compute shader in place of a geometry shader that emits points. A triangle of many points is put
-// aside and shared out over many threads (MANY 1), so that none waits for a single thread.
+// Deviates: a compute shader with one thread per triangle instead of a geometry shader that emits points. A triangle with many points is
+// put aside and spread over many threads (MANY 1), so that it does not occupy a single thread.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis MANY 0 1
@@ -15,26 +15,26 @@ layout(std140, binding = 2) uniform Points {
   int firstTriangle;  // of this draw
   int triangleCount;
   int pointsPerTriangle;
-  float pointsPerVoxel;  // above 0: as many points as the triangle has squared voxel sizes of area, times this
+  float pointsPerVoxel;  // above 0: points per area of one squared voxel size; otherwise pointsPerTriangle counts
   uvec2 seed;
-  int mostPoints;  // of one triangle
+  int mostPoints;  // limit of the points of one triangle
 };
-// 1: points in the middles of equal parts of the triangle; 0: random. A constant, so that no thread has the code of both.
+// 1: points at the centroids of equal parts of the triangle; 0: random. A specialization constant, so that only one of them is compiled.
 layout(constant_id = 0) const int regular = 0;
 #include "aside.glsl"
 
 const int kPointsPerThread = 64;
 
-// Sec. 3.1 speaks of a regular tessellation too: each edge in k parts makes k^2 triangles, of which the middles are the points.
+// Sec. 3.1 also mentions a regular tessellation: k parts per edge give k^2 triangles, whose centroids are the points.
 int edgeParts(int points) {
   int k = int(ceil(sqrt(float(points))));
-  // The root of a square may be rounded up.
+  // The computed root of a square number may be rounded up.
   return (k - 1) * (k - 1) >= points ? k - 1 : k;
 }
 
 int randomPointsOf(vec3 corners[3]) {
   if (pointsPerVoxel <= 0.0) return pointsPerTriangle;
-  // Sec. 3.1 speaks of adapting N to the size of the triangle: N = ceil(density * area / voxel size^2).
+  // Sec. 3.1 mentions adapting N to the size of the triangle: N = ceil(density * area / voxel size^2).
   float area = 0.5 * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
   return int(clamp(ceil(pointsPerVoxel * area), 1.0, float(mostPoints)));
 }
@@ -44,8 +44,8 @@ int pointsOf(vec3 corners[3]) {
   return regular != 0 ? k * k : count;
 }
 
-// The middle of part `n` of k^2, counted in rows from the first corner on: row r, from r to r + 1 edge parts away from that corner, has
-// r + 1 triangles that point to it and r that point away, in turns.
+// Barycentric coordinates of the centroid of part `n` of k^2. Parts are counted in rows from the first corner: row r, between r and r + 1
+// edge parts away from this corner, alternates between r + 1 triangles that point to the corner and r that point away.
 vec3 middleOf(int n, int k) {
   int r = int(sqrt(float(n)));
   r = r * r > n ? r - 1 : (r + 1) * (r + 1) <= n ? r + 1 : r;

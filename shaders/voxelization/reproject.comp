@@ -1,7 +1,7 @@
 #version 450
-// Mavridis & Papaioannou 2011, Sec. 3.2: each pixel that sees a surface marks the voxel that the surface point lies in.
-// Deviates: the g-buffer holds positions, so that nothing has to be projected back from depth.
-// With REFLECTED a point brings the direct light along that the renderer computed there, and says which of its sides reflects it.
+// Mavridis & Papaioannou 2011, Sec. 3.2: each pixel that shows a surface marks the voxel that contains the surface point.
+// Deviates: the g-buffer holds positions, so that none is reconstructed from depth.
+// With REFLECTED, the fragment also gets the direct light that the renderer computed at the point, and which of its sides reflects it.
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis REFLECTED 0 1
 #include "fragment_list.glsl"
@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #if REFLECTED
 layout(std430, binding = 2) writeonly buffer Reflected { uint reflected[]; };
-layout(binding = 4) uniform sampler2D direct;  // W/(sr m^2): what leaves the surface towards the camera without indirect light
+layout(binding = 4) uniform sampler2D direct;  // radiance from the surface towards the camera without indirect light, W/(sr m^2)
 #endif
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -28,7 +28,7 @@ void main() {
   ivec3 voxel = ivec3(floor(posGrid));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return;
 
-  // A fragment keeps the normal of the front side; the g-buffer's faces the camera.
+  // A fragment stores the normal of the front side; the normal of the g-buffer faces the camera.
   vec4 facing = texelFetch(gNormal, pixel, 0);
   vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
   vec3 radiance = vec3(0.0);
@@ -49,7 +49,7 @@ void main() {
   fragment.emission = packShared(radiance);
   fragments[index] = fragment;
 #if REFLECTED
-  // Its own emission is added elsewhere.
+  // The reader of the fragment adds its emission.
   reflected[index] = packShared(max(texelFetch(direct, pixel, 0).rgb - radiance, 0.0));
 #endif
 }

@@ -1,4 +1,4 @@
-// The grid, and where a pixel is sampled.
+// The grid, and the sample positions of a pixel.
 #include "list_grid.glsl"
 const int kMostSamples = 8;
 layout(std140, binding = 1) uniform SampleGrid {

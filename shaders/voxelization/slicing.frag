@@ -1,6 +1,6 @@
 #version 450
-// Fang & Chen 2000 (thesis 004 Sec. 2.1.1): what is left of the scene between the clip planes of a slice; each pixel is a voxel of it.
-// Deviates: a list of fragments in place of one image a slice, so that all of them are kept where several surfaces meet.
+// Fang & Chen 2000 (thesis 004 Sec. 2.1.1): the part of the scene between the clip planes of a slice; each pixel is a voxel of the slice.
+// Deviates: a list of fragments instead of one image per slice, so that a voxel with several surfaces keeps all of them.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #include "view_sample.glsl"

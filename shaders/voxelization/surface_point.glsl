@@ -1,4 +1,4 @@
-// Points of triangles as voxel fragments: what points.comp and the atlas passes share.
+// Points of triangles as voxel fragments: shared by points.comp and the atlas passes.
 #define SCENE_GEOMETRY
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
@@ -6,7 +6,7 @@
 #include "grid_corner.glsl"
 #include "surface_texture.glsl"
 
-// Appends the point with these barycentric coordinates of a triangle (of the whole scene's index buffer) with these corners.
+// Appends the point with these barycentric coordinates of a triangle. `triangle`: in the scene's index buffer; `corners`: in voxels.
 void appendPoint(int triangle, vec3 corners[3], vec3 weights) {
   vec3 posGrid = corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z;
   ivec3 voxel = ivec3(floor(posGrid));
@@ -20,7 +20,7 @@ void appendPoint(int triangle, vec3 corners[3], vec3 weights) {
     normal += weights[k] * vec3(normals[vertex], normals[vertex + 1], normals[vertex + 2]);
   }
   normal = mat3(objects[objectIndex].normalToWorld) * normal;
-  // Normals of corners that look away from each other may cancel.
+  // Opposite normals of corners may cancel.
   float size = length(normal);
   normal = size > 0.0 ? normal / size : vec3(0.0, 1.0, 0.0);
   MaterialData material = materials[materialIndex];

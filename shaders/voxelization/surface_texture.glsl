@@ -1,13 +1,13 @@
-// Textures and masks at points of triangles, as the axes TEXTURES and MASKS say.
-// Including files declare the scene's geometry and grid_corner.glsl before.
+// Textures and masks at points of triangles, according to the axes TEXTURES and MASKS.
+// Including files first declare the scene's geometry and include grid_corner.glsl.
 #include "common/textures.glsl"
 
 struct SurfaceTexture {
-  vec3 albedo;  // that the material's is multiplied by
+  vec3 albedo;  // factor on the albedo of the material
   float coverage;
 };
 
-// At a point with these barycentric coordinates; the corners are in voxels.
+// Textures at the point with these barycentric coordinates; the corners are in voxels.
 SurfaceTexture surfaceTextureAt(int triangle, vec3 corners[3], vec3 weights) {
   SurfaceTexture result = SurfaceTexture(vec3(1.0), 1.0);
 #if TEXTURES || MASKS
@@ -16,8 +16,8 @@ SurfaceTexture surfaceTextureAt(int triangle, vec3 corners[3], vec3 weights) {
     int vertex = 2 * int(indices[3 * triangle + k]);
     texcoord[k] = vec2(texcoords[vertex], 1.0 - texcoords[vertex + 1]);
   }
-  // Gradients of the texture coordinates per voxel along two perpendicular directions in the triangle's plane: they select the mip that
-  // averages over a voxel.
+  // Gradients of the texture coordinates per voxel along two perpendicular directions in the triangle's plane: they select the mip level
+  // that averages over a voxel.
   vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   float width = max(length(e1), 1e-20);
   float along = dot(e1, e2) / width, height = max(length(cross(e1, e2)) / width, 1e-20);

@@ -1,4 +1,4 @@
-// Which way an orthogonal view looks, and what part of the grid it sees.
+// The direction of an orthogonal view, and the part of the grid that it shows.
 #include "common/triangle.glsl"
 #include "list_grid.glsl"
 

@@ -1,4 +1,4 @@
-// The fragment that a drawn pixel leaves, but for its place. Gradients are those of the pixel, which is a voxel wide.
+// The fragment of a rasterized pixel, without its position. Gradients are those of the pixel, which is one voxel wide.
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
 #include "common/voxel.glsl"

@@ -1,7 +1,7 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3.1, on pixels: values of elements where the camera sees them. OF irradiance: reflected by the diffuse lobe.
-// value: as it is (openness, or light that the elements' own lobe reflects). segments: a colour for each (Fig. 3a). FROM neighbours: those
-// around a pixel. vertices: as they were interpolated over triangles (display_vertices.vert).
+// Dong et al. 2007, Sec. 4.3.1, per pixel: displays values of elements at visible surfaces. OF irradiance: reflected by the diffuse lobe.
+// OF value: unchanged (openness, or light that the elements reflect by their own lobe). OF segments: one colour per segment (Fig. 3a).
+// FROM neighbours: interpolates the elements around a pixel. FROM vertices: values interpolated over triangles (display_vertices.vert).
 #pragma lumivox axis OF irradiance value segments
 #pragma lumivox axis FROM neighbours vertices
 #pragma lumivox axis ADDED 0 1
@@ -15,14 +15,14 @@
 #endif
 #include "neighbours.glsl"
 #else
-layout(binding = 4) uniform sampler2D interpolated;  // w: 1 where there is a value
+layout(binding = 4) uniform sampler2D interpolated;  // w 1: the pixel has a value
 #endif
 #include "common/constants.glsl"
 #include "common/random.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const float empty = 0.0;  // where nothing is seen
+layout(constant_id = 0) const float empty = 0.0;  // value of pixels without a surface
 
 layout(binding = 5) uniform sampler2D gPosition;
 #if FROM == FROM_NEIGHBOURS
@@ -30,10 +30,10 @@ layout(binding = 6) uniform sampler2D gNormal;
 #endif
 layout(binding = 7) uniform sampler2D gDiffuse;
 #if ADDED
-layout(binding = 3) uniform sampler2D added;  // another image, of which this one is the sum
+layout(binding = 3) uniform sampler2D added;  // another image, which is added
 #endif
 #if OF == OF_SEGMENTS
-layout(std430, binding = 0) readonly buffer Segments { uint segments[]; };  // of leaves
+layout(std430, binding = 0) readonly buffer Segments { uint segments[]; };  // segment of each leaf
 #endif
 layout(binding = 0, rgba32f) uniform writeonly image2D shownImage;
 

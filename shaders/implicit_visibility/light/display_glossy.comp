@@ -1,6 +1,6 @@
 #version 450
-// The Phong lobe over the bins of the elements around what the camera sees: AT pixels, with their normal and material; or at the elements
-// themselves, for display.comp to blend (published: Dong et al. 2007, Sec. 4.3).
+// Reflection by the Phong lobe from the bins of elements. AT pixel: for the elements around a pixel, with the pixel's normal and material.
+// AT element: at the elements themselves, for display.comp to blend (published: Dong et al. 2007, Sec. 4.3).
 #pragma lumivox axis AT pixel element
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis ADDED 0 1
@@ -15,9 +15,9 @@ layout(binding = 5) uniform sampler2D gPosition;
 layout(binding = 6) uniform sampler2D gNormal;
 layout(binding = 7) uniform sampler2D gSpecular;
 #if ADDED
-layout(binding = 3) uniform sampler2D added;  // another image, of which this one is the sum
+layout(binding = 3) uniform sampler2D added;  // another image, which is added
 #endif
-layout(constant_id = 0) const int mostLeaves = 4;  // whose bins a pixel looks at
+layout(constant_id = 0) const int mostLeaves = 4;  // limit of the leaves whose bins a pixel reads
 #else
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

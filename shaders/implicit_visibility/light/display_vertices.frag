@@ -1,5 +1,5 @@
 #version 450
-// Values at vertices, as the rasteriser interpolates them, on the side that is seen. w: 1 where there is a value.
+// Values at vertices, interpolated by rasterisation, on the visible side. w 1: the pixel has a value.
 #pragma lumivox axis MASKS 0 1
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
@@ -24,9 +24,9 @@ void main() {
   bool hidden = false;
 #endif
   if (hidden || isElsewhere(posWorld)) discard;
-  // The g-buffer's normal is the surface's own, turned to the side that is seen.
+  // The g-buffer's normal is the normal of the surface, turned to the visible side.
   vec3 seen = texelFetch(gNormal, ivec2(gl_FragCoord.xy), 0).xyz;
   vec3 value = dot(normalWorld, seen) >= 0.0 ? front : back;
-  // Vertices without an element leave the value to the others.
+  // Vertices without an element have weight 0.
   outValue = known > 0.0 ? vec4(value / known, 1.0) : vec4(0.0);
 }

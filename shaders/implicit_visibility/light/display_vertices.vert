@@ -1,18 +1,18 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3.1: values of elements at the vertices that they stand on.
+// Dong et al. 2007, Sec. 4.3.1: values of elements at the vertices on which they are placed.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
 #include "texels.glsl"
 
-layout(std430, binding = 5) readonly buffer VertexLeaves { uint vertexLeaves[]; };  // of vertices; all bits: none
-layout(binding = 4) uniform sampler2D leafValues;                                   // two texels a leaf
+layout(std430, binding = 5) readonly buffer VertexLeaves { uint vertexLeaves[]; };  // leaf of each vertex; all bits set: none
+layout(binding = 4) uniform sampler2D leafValues;                                   // two texels per leaf: front, back
 
 layout(location = 0) out vec3 posWorld;
 layout(location = 1) out vec3 normalWorld;
 layout(location = 2) out vec3 front;
 layout(location = 3) out vec3 back;
-layout(location = 4) out float known;  // 0 where no element stands on the vertex
+layout(location = 4) out float known;  // 0 if the vertex has no element
 #if MASKS
 layout(location = 5) out vec2 texcoord;
 #endif

@@ -1,7 +1,7 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3, steps 8 and 9: what arrives at leaves over their links, and what they reflect of it. LISTED: over the links to
-// what shines alone (4.3.1). ENVIRONMENT: bins without a link bring the environment (4.4). OUTGOING: glossy
-// elements pass on what their lobes reflect.
+// Dong et al. 2007, Sec. 4.3, steps 8 and 9: the irradiance of leaves over their links, and the light that they reflect. LISTED: only over
+// links to emitters (4.3.1). ENVIRONMENT: bins without a link receive the environment (4.4). OUTGOING: glossy elements also send the light
+// that their lobes reflect.
 #pragma lumivox axis LISTED 0 1
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis WEIGHT bin element
@@ -10,13 +10,13 @@
 #include "sent.glsl"
 #include "common/constants.glsl"
 
-// Eight invocations share the links of a leaf, and the first of them adds up what they found, always in the same order.
+// Eight invocations share the links of a leaf; the first one adds up their sums, always in the same order.
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 const uint kTogether = 8u;
 
 layout(constant_id = 0) const bool adds = false;     // to the irradiance of earlier bounces
-layout(constant_id = 1) const bool reflects = true;  // what is reflected is passed on
+layout(constant_id = 1) const bool reflects = true;  // the reflected light is written
 
 layout(std140, binding = 1) uniform Illumination {
   vec3 environment;  // W/(sr m^2)
@@ -26,7 +26,7 @@ layout(std140, binding = 1) uniform Illumination {
 layout(std430, binding = 3) readonly buffer Lights { uint lights[]; };
 #endif
 #if WEIGHT == WEIGHT_ELEMENT
-layout(std430, binding = 4) readonly buffer Counts { uint counts[]; };  // of links: how many of the leaf's are to the same node
+layout(std430, binding = 4) readonly buffer Counts { uint counts[]; };  // for each link, the number of the leaf's links to the same node
 #endif
 layout(binding = 3) uniform sampler2D albedos;
 layout(binding = 0, rgba32f) uniform image2D irradianceImage;
@@ -40,7 +40,7 @@ struct Leaf {
   float scale;
 };
 
-// Adds what comes over a link to the side that it arrives at.
+// Adds the irradiance over a link to the side at which it arrives.
 void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
   uvec2 link = links[number];
 #if WEIGHT == WEIGHT_BIN
@@ -49,7 +49,7 @@ void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
   vec4 seen = texelFetch(elementPosition, texelOf(link.y), 0);
   vec3 path = seen.xyz - leaf.position, toSeen = normalize(path);
   vec3 normal = texelFetch(elementNormal, texelOf(link.y), 0).xyz;
-  // Of groups the normal is the area shown along each axis.
+  // For groups, elementNormal holds the area projected along each axis.
   float shown = link.y < uint(firstGroup) ? seen.w * abs(dot(normal, toSeen)) : dot(normal, abs(toSeen));
   float weight = dot(leaf.normal, toSeen) * shown / (dot(path, path) * float(counts[number]));
 #endif
@@ -59,7 +59,7 @@ void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
 }
 
 #if ENVIRONMENT
-// The same for bins without a link.
+// Adds the environment in bins without a link, from `begin` on and before `end`.
 void addSky(uint begin, uint end, Leaf leaf, inout vec3 front, inout vec3 back) {
   for (uint bin = begin; bin < end; ++bin) {
     float weight = binWeight(bin, leaf.normal, leaf.scale);
@@ -77,7 +77,7 @@ void main() {
     uvec4 entry = first[item];
     Leaf leaf = Leaf(texelFetch(elementPosition, texelOf(item), 0).xyz, texelFetch(elementNormal, texelOf(item), 0).xyz,
                      uintBitsToFloat(entry.z));
-    // Each invocation takes every eighth link, so that sums are the same whatever else is left out.
+    // Each invocation takes every eighth link of the leaf, so that sums do not depend on which links are listed.
 #if LISTED
     uint listFirst = lights[2u * item], listEnd = listFirst + lights[2u * item + 1u];
     for (uint i = listFirst; i < listEnd; ++i)

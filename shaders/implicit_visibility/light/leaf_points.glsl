@@ -1,4 +1,4 @@
-// Even points of a square of a leaf's area.
+// Evenly spaced points on a square with the area of a leaf.
 #ifndef LUMIVOX_LEAF_POINTS
 #define LUMIVOX_LEAF_POINTS
 
@@ -6,7 +6,7 @@ struct LeafSquare {
   vec3 middle, along, across;
 };
 
-// `place`: w area, m^2.
+// `place`: xyz centre, w area, m^2.
 LeafSquare squareOf(vec4 place, vec3 normal) {
   vec3 along = abs(normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
   along = cross(normal, along);

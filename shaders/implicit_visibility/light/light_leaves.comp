@@ -1,6 +1,6 @@
 #version 450
-// What leaves reflect of direct light: of lights by their shadow maps, and of what shines by links where that brings it (LINKED).
-// EMITTED: in place of that what they emit themselves.
+// OF reflected: direct light that leaves reflect: from lights by their shadow maps, and from emitters by links (LINKED).
+// OF emitted: the emission of the leaves instead.
 #pragma lumivox axis OF reflected emitted
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1

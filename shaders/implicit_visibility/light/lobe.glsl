@@ -1,4 +1,4 @@
-// The Phong lobe over what a leaf sees in its bins: Dong et al. 2007, Eq. 2, with the lobe constant across a bin.
+// Reflection by the Phong lobe from the bins of a leaf: Dong et al. 2007, Eq. 2, with the lobe constant within a bin.
 #ifndef LUMIVOX_LOBE
 #define LUMIVOX_LOBE
 #include "../links/links.glsl"
@@ -15,7 +15,7 @@ vec3 lobeWeight(uint bin, vec3 normal, float scale, vec3 toEye, vec4 specular) {
   return weight > 0.0 ? weight * phongLobe(specular.rgb, specular.w, normal, toEye, directions[bin].xyz) : vec3(0.0);
 }
 
-// Radiance towards the eye, W/(sr m^2). `normal` faces it.
+// Radiance towards the eye, W/(sr m^2). `normal` faces the eye.
 vec3 glossyRadiance(uint leaf, vec3 normal, vec3 toEye, vec4 specular) {
   uvec4 entry = first[leaf];
   float scale = uintBitsToFloat(entry.z);

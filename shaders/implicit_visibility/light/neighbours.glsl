@@ -1,18 +1,18 @@
-// Elements around a point of a surface, by cells: of each size of elements there is a grid of cubes, whose elements stand in a table by the
-// hash of their cube. C++ side: techniques/implicit_visibility/elements/element_cells.h.
+// Finds the elements around a point of a surface: each size class of elements has a grid of cubes, and a hash table lists the elements of
+// each cube. C++ side: techniques/implicit_visibility/elements/element_cells.h.
 #ifndef LUMIVOX_NEIGHBOURS
 #define LUMIVOX_NEIGHBOURS
 #include "nodes.glsl"
 
 const int kMostSizes = 16;
 layout(std140, binding = 2) uniform Cells {
-  vec4 cellSizes[kMostSizes];  // of each grid: x width of a cube, m; y one over it
+  vec4 cellSizes[kMostSizes];  // per grid: x width of a cube, m; y its reciprocal
   int sizes;
   uint buckets;     // a power of two
-  float reach;      // of an element's support, in its radii
+  float reach;      // radius of an element's support, in radii of the element
 };
-layout(std430, binding = 6) readonly buffer CellStarts { uint cellStarts[]; };  // of buckets, and one more
-layout(std430, binding = 7) readonly buffer CellLeaves { uvec2 cellLeaves[]; };  // leaf; grid: by buckets, growing
+layout(std430, binding = 6) readonly buffer CellStarts { uint cellStarts[]; };  // first entry of each bucket, then the total
+layout(std430, binding = 7) readonly buffer CellLeaves { uvec2 cellLeaves[]; };  // leaf; grid: ordered by bucket
 
 uint bucketOf(ivec3 cell, uint grid) {
   uvec3 words = uvec3(cell);
@@ -20,11 +20,12 @@ uint bucketOf(ivec3 cell, uint grid) {
 }
 
 struct SurfacePoint {
-  vec3 position, normal;  // the normal faces the side that is seen
-  bool isFront;           // the side that is seen
+  vec3 position, normal;  // the normal faces the visible side
+  bool isFront;           // whether the visible side is the front
 };
 
-// What is around a point. Leaves of the largest weights, the largest first; their sides are 0 for the front.
+// The interpolation at a point: weighted sum of the values, sum of the weights, and the leaves with the largest weights, the largest first.
+// sides: 0 front, 1 back.
 const int kNearest = 4;
 struct Around {
   vec3 sum;
@@ -34,11 +35,11 @@ struct Around {
 };
 
 #ifdef LEAF_VALUES
-layout(binding = 4) uniform sampler2D leafValues;  // two texels a leaf
+layout(binding = 4) uniform sampler2D leafValues;  // two texels per leaf: front, back
 #endif
 
-// Weight of a leaf: its area, falling with the distance to 0 at `times` its support, with the angle between the normals, and with the
-// distance from the plane. `strict`: leaves of the other side of a wall, and those that are turned away, do not count.
+// Weight of a leaf: its area, decreasing with the distance, to 0 at `times` its support. `strict`: the weight also decreases with the angle
+// between the normals and with the distance from the plane, so that leaves across a wall or turned away do not count.
 float neighbourWeight(SurfacePoint point, vec4 place, vec4 normal, float times, bool strict) {
   float support = reach * normal.w * times;
   vec3 path = place.xyz - point.position;
@@ -67,7 +68,7 @@ void addCell(SurfacePoint point, ivec3 cell, uint grid, float inverse, float tim
     uvec2 entry = cellLeaves[i];
     if (entry.y != grid) continue;
     vec4 place = texelFetch(elementPosition, texelOf(entry.x), 0);
-    if (ivec3(floor(place.xyz * inverse)) != cell) continue;  // another cube of the same hash
+    if (ivec3(floor(place.xyz * inverse)) != cell) continue;  // another cube with the same hash
     vec4 normal = texelFetch(elementNormal, texelOf(entry.x), 0);
     float weight = neighbourWeight(point, place, normal, times, strict);
     if (!(weight > 0.0)) continue;
@@ -85,7 +86,7 @@ void addCell(SurfacePoint point, ivec3 cell, uint grid, float inverse, float tim
 void addAround(SurfacePoint point, float times, bool strict, inout Around around) {
   for (int grid = 0; grid < sizes; ++grid) {
     float width = cellSizes[grid].x, inverse = cellSizes[grid].y;
-    // A cube is as wide as the supports of its elements, or wider.
+    // A cube is at least as wide as the supports of its elements.
     ivec3 low = ivec3(floor((point.position - 0.5 * times * width) * inverse));
     ivec3 high = ivec3(floor((point.position + 0.5 * times * width) * inverse));
     for (int z = low.z; z <= high.z; ++z)
@@ -94,7 +95,7 @@ void addAround(SurfacePoint point, float times, bool strict, inout Around around
   }
 }
 
-// Farther, and then on whichever side, where there is none. Without any leaf the weights are 0.
+// Interpolates the leaves around a point. If there are none, it searches farther, and then on any side. Without any leaf the weights are 0.
 Around findAround(SurfacePoint point) {
   Around around;
   around.sum = vec3(0.0);

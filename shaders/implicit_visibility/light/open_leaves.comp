@@ -1,5 +1,5 @@
 #version 450
-// How open leaves are: the share of the projected solid angle of a side in whose bins nothing is nearer than a distance.
+// Openness of leaves: the share of a side's projected solid angle whose bins have no link nearer than a distance.
 #include "../links/links.glsl"
 #include "nodes.glsl"
 #include "common/constants.glsl"

@@ -1,6 +1,7 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3, step 10: radiance of nodes as the mean of their children by area. A group has six values in place of two: what
-// its discs send along an axis, by the area that they show along it. What turns its front that way hides the backs behind it.
+// Dong et al. 2007, Sec. 4.3, step 10: the radiance of a node is the mean of its children, weighted by area. A group has six values instead
+// of two: the radiance of its discs along each axis, weighted by their projected area. Discs with their front towards the axis hide the
+// backs of others.
 #pragma lumivox axis SUMS 0 1
 #include "nodes.glsl"
 
@@ -42,7 +43,7 @@ void pullUpDisc(uint node, uvec4 below) {
   put(2u * node + 1u, vec4(back * scale, 1.0));
 }
 
-// Adds what a child shows towards an axis, and behind it: radiance times area, and area.
+// Adds the projected area of a child along an axis, and radiance times area, to `fronts` or `backs`.
 void addShown(uint child, uint axis, bool negative, inout vec4 fronts, inout vec4 backs) {
   vec3 normal = texelFetch(elementNormal, texelOf(child), 0).xyz;
   uint texel = radianceTexel(child);

@@ -1,6 +1,6 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3, step 10, for radiance by direction: that of a node is the mean of its children by the area that they show in the
-// direction. What turns its front that way hides the backs behind it.
+// Dong et al. 2007, Sec. 4.3, step 10, for directional radiance: the radiance of a node is the mean of its children, weighted by their
+// projected area in the direction. Children with their front towards the direction hide the backs of others.
 #include "nodes.glsl"
 #include "../links/direction_bins.glsl"
 
@@ -9,16 +9,16 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 1) uniform OutgoingRun {
   int firstRow, rowsInRun;
-  int side;  // directions along a side of a face of the cube
+  int side;  // bins along a side of a face of the cube
 };
 layout(std430, binding = 0) readonly buffer Children { uvec4 children[]; };
 layout(std430, binding = 3) readonly buffer OutgoingNodes { uint outgoingNodes[]; };  // of rows
 layout(std430, binding = 5) readonly buffer OutgoingRows { uint outgoingRows[]; };    // of nodes
-layout(binding = 2) uniform sampler2D pulledUp;  // as ElementLight::radiance, whose groups know what fronts they show
+layout(binding = 2) uniform sampler2D pulledUp;  // as ElementLight::radiance; w of groups: projected area of fronts
 layout(binding = 0, rgba32f) uniform image2D outgoingImage;
 const uint kNone = 0xffffffffu;
 
-// m^2, below 0 for backs.
+// Projected area in a direction, m^2; negative for backs.
 float areaShown(uint node, vec3 direction) {
   vec3 normal = texelFetch(elementNormal, texelOf(node), 0).xyz;
   if (node < uint(firstGroup)) return texelFetch(elementPosition, texelOf(node), 0).w * dot(normal, direction);

@@ -1,6 +1,6 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3, for glossy elements: outgoing radiance of their leaves in the bins of a cube, by the Phong lobe, OF what comes
-// over their links (with ENVIRONMENT also in bins without one), or of lights by their shadow maps.
+// Dong et al. 2007, Sec. 4.3, for glossy elements: outgoing radiance of leaves in the bins of a cube, reflected by the Phong lobe. OF
+// links: light over the links (with ENVIRONMENT also in bins without a link). OF lights: light of the lights, by their shadow maps.
 #pragma lumivox axis OF links lights
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis OUTGOING 0 1
@@ -19,22 +19,22 @@
 #include "../links/direction_bins.glsl"
 #endif
 
-// The invocations of a group have a direction of one leaf each, and look up together what arrives there.
+// Each invocation of a group handles one outgoing direction of the same leaf; the group loads the arriving light together.
 layout(local_size_x = 32) in;
 #include "common/list.glsl"
 const uint kTogether = 32u;
 
-layout(constant_id = 0) const bool adds = false;       // to what the image holds
+layout(constant_id = 0) const bool adds = false;       // adds to the values of the image
 layout(constant_id = 1) const bool sums = false;       // another image holds the sum over bounces
 layout(constant_id = 2) const bool addsToSum = false;  // false: begins it
-layout(constant_id = 3) const int samplesPerSide = 1;  // of an element, at which lights are asked for
+layout(constant_id = 3) const int samplesPerSide = 1;  // points of an element at which lights are evaluated
 
 layout(std140, binding = 1) uniform Reflection {
   vec3 environment;       // W/(sr m^2)
-  int glossyLeaves;       // rows of leaves, which come first
-  int side;               // directions along a side of a face of the cube
-  int arrivals;           // bins, or lights
-  float largestExponent;  // of lobes that bins resolve
+  int glossyLeaves;       // number of leaf rows, which come first
+  int side;               // bins along a side of a face of the cube
+  int arrivals;               // number of bins, or of lights
+  float largestExponent;  // limit of exponents, that of the lobes that bins resolve
 };
 layout(std430, binding = 3) readonly buffer OutgoingNodes { uint outgoingNodes[]; };  // of rows
 layout(binding = 3) uniform sampler2D speculars;
@@ -44,7 +44,7 @@ layout(binding = 1, rgba32f) uniform image2D sumImage;
 struct Arrival {
   vec3 irradiance;  // W/m^2
   vec3 from;        // unit length
-  float weight;     // projected solid angle, sr, with the sign of its side; of a light without extent the sign alone
+  float weight;     // projected solid angle, sr, with the sign of its side; for a light only the sign counts
 };
 shared Arrival arrived[kTogether];
 
@@ -61,7 +61,7 @@ Arrival arrivalOf(uint bin, uint leaf, vec4 place, vec3 normal) {
   return Arrival(abs(weight) * radiance, directions[bin].xyz, weight);
 }
 #else
-// All of a light comes from where it is as seen from the middle of the leaf.
+// All light of a lamp arrives from its direction at the centre of the leaf.
 Arrival arrivalOf(uint light, uint leaf, vec4 place, vec3 normal) {
   vec3 toLight, front = vec3(0.0), back = vec3(0.0);
   arrivingIrradiance(lights[light], place.xyz, toLight);
@@ -83,10 +83,10 @@ void main() {
   vec3 normal = texelFetch(elementNormal, texelOf(leaf), 0).xyz;
   bool isFront = dot(directionOfBin(min(bin, all - 1u), side, true), normal) >= 0.0;
   vec3 facing = isFront ? normal : -normal;
-  // The lobe is that of the mean over the bin: over those of its four quarters that are on the side of its middle.
+  // The lobe is averaged over the bin: over those of its four quarters that are on the side of the bin's centre.
   vec3 towards[4];
   float quarters = 0.0;
-  uint line = bin / uint(side), column = bin % uint(side);  // of all faces, one behind the other
+  uint line = bin / uint(side), column = bin % uint(side);  // counted through all faces
   for (uint k = 0u; k < 4u; ++k) {
     towards[k] = directionOfBin((2u * line + k / 2u) * uint(2 * side) + 2u * column + k % 2u, 2 * side, true);
     if (dot(towards[k], facing) > 0.0) quarters += 1.0;
@@ -112,7 +112,7 @@ void main() {
   if (bin >= all) return;
   sum *= specular.rgb / max(quarters, 1.0);
 #if OF == OF_LINKS
-  // A lobe reflects no more than its albedo, however its bins lie.
+  // Normalised, so that the sampled lobe reflects at most its albedo.
   sum /= max(weights / max(quarters, 1.0), 1.0);
 #endif
   ivec2 texel = texelOf(row * all + bin);

@@ -1,4 +1,4 @@
-// What comes over a link: radiance out of a texture as ElementLight::radiance and, with OUTGOING, what glossy elements pass on.
+// Radiance over a link: from a texture as ElementLight::radiance and, with OUTGOING, from the directional radiance of glossy elements.
 #ifndef LUMIVOX_SENT
 #define LUMIVOX_SENT
 #include "../links/links.glsl"
@@ -9,7 +9,7 @@
 
 layout(binding = 2) uniform sampler2D sentRadiance;
 
-// Of groups the mean of the three axes that the direction has parts of, by their squares, which sum to 1.
+// Radiance of a group: the mean of the three axis values on the direction's side, weighted by the squared components, which sum to 1.
 vec3 sentByGroup(uint node, vec3 direction) {
   uint texel = radianceTexel(node);
   vec3 sum = vec3(0.0);
@@ -20,14 +20,14 @@ vec3 sentByGroup(uint node, vec3 direction) {
   return sum;
 }
 
-// W/(sr m^2), at `position`. Of a disc it is that of the side that the link tells.
+// Radiance over a link at `position`, W/(sr m^2). For a disc, the link stores which side is seen.
 vec3 sentOver(uvec2 link, vec3 position) {
   uint node = link.y;
   vec3 sent;
   if (node < uint(firstGroup)) sent = texelFetch(sentRadiance, texelOf(2u * node + linkSide(link)), 0).rgb;
   else sent = sentByGroup(node, normalize(position - texelFetch(elementPosition, texelOf(node), 0).xyz));
 #if OUTGOING
-  // Against the middle ray of the bin: towards the middle of a node that several rays meet all of them would read one direction.
+  // Opposite to the centre of the bin. The direction to the node's centre would be the same for all bins that see the node.
   uint row = outgoingRows[node];
   if (row != kNoRow) sent += outgoingTowards(row, node, -directions[linkBin(link)].xyz);
 #endif

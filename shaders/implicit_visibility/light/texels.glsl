@@ -1,4 +1,4 @@
-// Where a number's texel is. Ports SurfaceElements and ElementLight.
+// The texel of a numbered value. Ports SurfaceElements and ElementLight.
 #ifndef LUMIVOX_TEXELS
 #define LUMIVOX_TEXELS
 

@@ -1,5 +1,5 @@
-// Directions in the bins of a cube: what techniques/implicit_visibility/links/direction_bins.h describes. Centres and solid angles are in the
-// buffer `directions` of ElementLinks.
+// Direction bins on the faces of a cube, as techniques/implicit_visibility/links/direction_bins.h describes them. Their centres and solid
+// angles are in the buffer `directions` of ElementLinks.
 
 /// The bin of a direction of any length above 0.
 uint directionBin(vec3 direction, int side, bool even) {
@@ -13,7 +13,7 @@ uint directionBin(vec3 direction, int side, bool even) {
   return uint((face * side + line.y) * side + line.x);
 }
 
-/// The unit vector along the middle of a bin.
+/// The unit vector to the centre of a bin.
 vec3 directionOfBin(uint bin, int side, bool even) {
   int perFace = side * side, face = int(bin) / perFace, within = int(bin) - face * perFace, axis = face / 2;
   vec2 ratio = (2.0 * vec2(within % side, within / side) + 1.0) / float(side) - 1.0;

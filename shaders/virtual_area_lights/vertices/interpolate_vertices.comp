@@ -1,6 +1,6 @@
 #version 450
-// Sec. 3.2 step 3 as published: the averaged lights of the points that each vertex of the meshes refers to (Eq. 12, 13), on both sides of what
-// is open. Places are told as offsets from the vertex, so that nothing is lost far from the origin.
+// Sec. 3.2 step 3 as published: interpolates the averaged lights of the points that each vertex refers to (Eq. 12, 13), on both sides of
+// open surfaces. Positions are offsets from the vertex, so that no precision is lost far from the origin.
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox axis INTERPOLATE averaged plain
 #pragma lumivox require LOBE == diffuse || INTERPOLATE == averaged
@@ -11,22 +11,22 @@ layout(local_size_x = 64) in;
 #include "../interpolate.glsl"
 
 struct VertexLight {
-  vec4 light;   // of a glossy one w: 1 + exponent
-  vec4 offset;  // xyz; w: 1 where there is light to be had
+  vec4 light;   // w of a glossy light: 1 + exponent
+  vec4 offset;  // xyz; w 1: the vertex has light
 };
 layout(std140, binding = 0) uniform Parameters {
   int vertices;
-  int sides;      // of a vertex; 1: fronts alone have points
+  int sides;      // sides per vertex; 1: only fronts have points
   int published;  // Eq. 13 as printed
 };
 layout(binding = 0) uniform sampler2D lights;
 layout(binding = 1) uniform sampler2D places;
 layout(std430, binding = 4) readonly buffer VertexObjects { uint vertexObjects[]; };
-// `neighbours` a side, the nearest at rest first; all bits: none.
+// `neighbours` points per side, by increasing distance in the rest pose; all bits set: no point.
 layout(std430, binding = 5) readonly buffer VertexPoints { uint vertexPoints[]; };
-layout(std430, binding = 8) writeonly buffer VertexLights { VertexLight vertexLights[]; };  // sides of a vertex beside each other
+layout(std430, binding = 8) writeonly buffer VertexLights { VertexLight vertexLights[]; };  // the sides of a vertex are adjacent
 
-// The points that a side refers to.
+// The points to which a side of a vertex refers.
 Nearest referredPoints(vec3 position, uint first) {
   Nearest nearest;
   nearest.count = 0;

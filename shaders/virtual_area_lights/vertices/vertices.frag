@@ -1,5 +1,5 @@
 #version 450
-// Sec. 3.2 step 4 as published: the averaged light of vertices as the rasteriser interpolates it, on the side that is seen.
+// Sec. 3.2 step 4 as published: the averaged light of vertices, interpolated by rasterisation, on the visible side.
 #pragma lumivox axis MASKS 0 1
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
@@ -26,10 +26,10 @@ void main() {
   bool hidden = false;
 #endif
   if (hidden || isElsewhere(posWorld)) discard;
-  // The g-buffer's normal is the surface's own, turned to the side that is seen.
+  // The g-buffer's normal is the normal of the surface, turned to the visible side.
   bool isFront = dot(normalWorld, texelFetch(gNormal, ivec2(gl_FragCoord.xy), 0).xyz) >= 0.0;
   vec4 light = isFront ? frontLight : backLight, offset = isFront ? frontOffset : backOffset;
-  // Vertices without light leave it to the others.
+  // Vertices without light have weight 0.
   outLight = offset.w > 0.0 ? light / offset.w : vec4(0.0);
   outPlace = vec4(offset.w > 0.0 ? posWorld + offset.xyz / offset.w : posWorld, 1.0);
 }

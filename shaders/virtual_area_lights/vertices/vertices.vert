@@ -1,15 +1,15 @@
 #version 450
-// Sec. 3.2 step 4 as published: the averaged lights of vertices (interpolate_vertices.comp) through the rasteriser.
+// Sec. 3.2 step 4 as published: passes the averaged lights of vertices (interpolate_vertices.comp) to rasterisation.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
 
 struct VertexLight {
   vec4 light;
-  vec4 offset;  // w: 1 where there is light to be had
+  vec4 offset;  // w 1: the vertex has light
 };
 layout(std140, binding = 4) uniform VertexSides {
-  int sides;  // 1: fronts alone have points
+  int sides;  // 1: only fronts have points
 };
 layout(std430, binding = 5) readonly buffer VertexLights { VertexLight vertexLights[]; };
 

@@ -1,10 +1,10 @@
 #version 450
-// Lists the voxels of a level of a clipmap that clipmap_filter.comp has to make anew: those that hold anything, or did, and of which what they are
-// made of differs from the frame before: their children, what was voxelized, the ramp between the two, or which voxel has its place. Notes
-// them for the next coarser level.
+// Lists the voxels of a level of a clipmap that clipmap_filter.comp has to refilter. These are the voxels that are or were occupied and
+// whose sources differ from the last frame: their children, their voxelized values, the ramp between the two, or the voxel at their
+// address. Marks the listed voxels for the next coarser level.
 //
-// CELLS: what was voxelized differs in changed cells as well, and not only where the level has come to.
-// LISTED: nothing else does: only the voxels of cells are looked at that clipmap_coarser.comp has listed.
+// CELLS: voxelized values differ also in changed cells, not only where the level has moved to.
+// LISTED: no level has moved: only the voxels of the cells listed by clipmap_coarser.comp are tested.
 #pragma lumivox axis ABOVE 0 1
 #pragma lumivox axis CELLS 0 1
 #pragma lumivox axis LISTED 0 1
@@ -30,22 +30,22 @@ layout(std430, binding = 9) readonly buffer CellHeads { ListHead cellHeads[]; };
 layout(std430, binding = 10) readonly buffer CellItems { uint cellItems[]; };
 #endif
 
-// What a level had in the frame before: nothing where all is made anew.
+// The voxels of a level in the last frame; none if all are refiltered.
 struct Had {
   ivec4 ownFirst, ownEnd;  // w: bits of LevelEnds::endless
   ivec4 innerFirst, innerEnd;
 };
 layout(std140, binding = 0) uniform Level {
-  ivec3 firstMade;  // voxels that are looked at, and addresses of the block that hold none
+  ivec3 firstMade;  // range of tested voxels, including addresses of the block without a voxel
   int level;
   ivec3 endMade;
   int unused;
   Had had, finerHad;
 };
-// By places, as the bits of what is occupied.
+// Bits of refiltered voxels, in the order of the occupancy bits.
 layout(std430, binding = 5) buffer MadeAnew { uint madeAnew[]; };
 
-// Whether what was voxelized differs, of a level around the camera that begins there.
+// Whether the voxelized values of a voxel differ from the last frame, in level `of` around the camera, whose first voxel is `first`.
 bool differsAsVoxelized(int of, ivec4 first, Had before, ivec3 voxel) {
   bool differs = !isIn(before.ownFirst, before.ownEnd, voxel);
 #if CELLS
@@ -53,7 +53,8 @@ bool differsAsVoxelized(int of, ivec4 first, Had before, ivec3 voxel) {
 #endif
   return differs;
 }
-// Whether a child differs as it is read. (Without branches: most of what children are asked for is the same for all of them.)
+// Whether the value that is read of a child differs from the last frame. Without branches, because most
+// conditions are equal for all children.
 bool differsAsRead(int finer, LevelBlocks blocks, ivec3 voxel, bool isAnew) {
   bool wasOwn = isIn(finerHad.ownFirst, finerHad.ownEnd, voxel), wasInner = isIn(finerHad.innerFirst, finerHad.innerEnd, voxel);
   bool inner = isIn(blocks.innerFirst, blocks.innerEnd, voxel);

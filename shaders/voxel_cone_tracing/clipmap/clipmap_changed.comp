@@ -1,7 +1,7 @@
 #version 450
-// Finds the cells of a clipmap's levels in which the voxels may differ from those of the frame before: what moves has left or come to them, or
-// light arrives there otherwise. A cell that is found is filled anew and nothing else, so that it does no harm to find too many. Lists
-// those that hold anything.
+// Finds the cells of a clipmap's levels whose voxels may differ from the last frame: a moving object has left or entered the cell, or the
+// light of the cell changes. A cell found needlessly only costs being filled again, so the test is
+// conservative. Lists the occupied changed cells.
 #pragma lumivox axis LIGHTS 0 1
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
@@ -39,7 +39,7 @@ bool isTouched(vec3 low, vec3 high) {
   return false;
 }
 
-// Of so many voxels in a row, which are no more than 32 and whose addresses follow each other.
+// Whether any of `count` voxels in a row is occupied; at most 32, with consecutive addresses.
 bool isAnyOccupied(ClipmapPlace place, int count) {
   uint shift = uint(findLSB(place.bit)), bits = clipmapOccupied[place.word] >> shift;
   if (shift + uint(count) > 32u) bits |= clipmapOccupied[place.word + 1u] << (32u - shift);
@@ -50,7 +50,7 @@ bool holdsAnything(int level, ivec3 first, ivec3 end) {
   for (int z = first.z; z < end.z; ++z)
     for (int y = first.y; y < end.y; ++y) {
       ClipmapPlace place = ownPlace(level, ivec3(first.x, y, z));
-      int before = min(count, place.period - place.address.x);  // addresses begin anew
+      int before = min(count, place.period - place.address.x);  // addresses wrap around
       if (isAnyOccupied(place, before)) return true;
       if (before < count && isAnyOccupied(ownPlace(level, ivec3(first.x + before, y, z)), count - before)) return true;
     }
@@ -64,7 +64,7 @@ void main() {
   voxelsOfCell(level, item % cells, first, end);
   float size = clipmapVoxel * exp2(float(level));
   vec3 low = clipmapOrigin + size * vec3(first), high = clipmapOrigin + size * vec3(end);
-  // A voxel more to each side for rounding.
+  // One voxel more on each side, for rounding.
   bool holds = holdsAnything(level, first, end), changed = isTouched(low - size, high + size) || (holds && isLitAnew(low, high));
   clipmapCells[item] = uint(changed);
   if (holds && changed) putItem(0, uint(item), 64u);

@@ -1,6 +1,6 @@
-// The children of a voxel of a clipmap, in the next finer level as it is read: of what that one shares with its finer one, as the latter makes it.
+// The children of a voxel of a clipmap in the next finer level, as that level is read: inner voxels where they exist, otherwise own voxels.
 
-// What is known of a level, read once.
+// The uniforms of a level, read once.
 struct LevelBlocks {
   ivec4 ownFirst, ownEnd, ownTexel, ownStart;
   ivec4 innerFirst, innerEnd, innerTexel, innerStart;
@@ -18,5 +18,5 @@ ClipmapPlace readPlace(LevelBlocks blocks, ivec3 voxel) {
                  inner ? blocks.innerTexel : blocks.ownTexel, inner ? blocks.innerStart : blocks.ownStart, voxel);
 }
 ivec3 childOf(ivec3 voxel, int i) { return 2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2); }
-// A voxel at the border of the coarsest level may reach beyond it.
+// Whether a child lies in its level: a voxel at the border of the coarsest level may have children outside.
 bool isOfLevel(LevelBlocks blocks, ivec3 voxel) { return isIn(blocks.ownFirst, blocks.ownEnd, voxel); }

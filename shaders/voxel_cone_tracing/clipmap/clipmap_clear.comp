@@ -1,7 +1,7 @@
 #version 450
-// Empties the voxels of a box of one level of a clipmap.
+// Clears the voxels in a box of one level of a clipmap.
 //
-// CHANGED: those of the changed cells that clipmap_changed.comp has listed, of all levels.
+// CHANGED: clears the voxels of the cells that clipmap_changed.comp has listed, in all levels.
 #pragma lumivox axis CHANGED 0 1
 #if CHANGED
 layout(local_size_x = 64) in;

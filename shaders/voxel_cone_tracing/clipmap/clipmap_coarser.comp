@@ -1,6 +1,6 @@
 #version 450
-// Lists the cells of a level of a clipmap in which what is read may differ from the frame before, while all levels stay where they are: what was
-// voxelized does, or what is read in the finer level.
+// Lists the cells of a level of a clipmap whose read values may differ from the last frame, if no level has moved: their voxelization
+// differs, or the read values of the finer level differ.
 layout(local_size_x = 64) in;
 #include "clipmap.glsl"
 #include "clipmap_cells.glsl"
@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 #include "clipmap_items.glsl"
 
 layout(std140, binding = 0) uniform Level { int level; };
-layout(std430, binding = 9) buffer ReadCells { uint readCells[]; };  // as clipmapCells; nothing of level 0
+layout(std430, binding = 9) buffer ReadCells { uint readCells[]; };  // indexed like clipmapCells; level 0 is unused
 
 bool differs(int of, ivec3 cell) {
   uint index = cellIndex(of, 4 * cell, ownFirst[0].w);

@@ -1,7 +1,8 @@
 #version 450
-// The voxels of a level of a clipmap that the finer one has too, as filter_directional.comp makes coarser levels: those of a level around the
-// camera, blended with what was voxelized by a ramp of the distance from the border of the finer level (thesis 004 Sec. 3.5.2), so that a
-// thing that comes into the finer level does not change by a leap; or those of a level above those. Of those that clipmap_anew.comp has listed.
+// Filters the voxels of a level of a clipmap from the finer level, by the rule of filter_directional.comp, for the voxels that
+// clipmap_anew.comp has listed. In a level around the camera, the result is blended with the voxelized values by a ramp of the distance
+// from the border of the finer level (thesis 004 Sec. 3.5.2), so that an object that enters the finer level does not jump. In a level above
+// (ABOVE), all voxels are filtered.
 #pragma lumivox axis ABOVE 0 1
 layout(local_size_x = 64) in;
 #include "common/cones.glsl"
@@ -12,10 +13,10 @@ layout(local_size_x = 64) in;
 #include "clipmap_items.glsl"
 
 layout(std140, binding = 0) uniform Level {
-  ivec3 firstMade;  // from which items count
+  ivec3 firstMade;  // origin of the voxel coordinates in items
   int level;
 };
-// By the outward normals of the faces.
+// Named by the outward normals of the faces.
 layout(binding = 0) uniform sampler3D positiveX;
 layout(binding = 1) uniform sampler3D negativeX;
 layout(binding = 2) uniform sampler3D positiveY;
@@ -23,7 +24,7 @@ layout(binding = 3) uniform sampler3D negativeY;
 layout(binding = 4) uniform sampler3D positiveZ;
 layout(binding = 5) uniform sampler3D negativeZ;
 
-// Texels of the children, x first, and which of them are not empty.
+// Texels of the children, with x fastest, and bits of those that are occupied.
 struct Children {
   ivec3 texels[8];
   uint occupied;
@@ -44,8 +45,9 @@ Children childrenOf(int finer, ivec3 voxel) {
   return result;
 }
 
-// A face of a coarse voxel as columns.glsl makes it, of eight whole children without loops: the columns of two along an axis, where the
-// second child lies `along` behind the first one, in front of it from the higher side, and their mean over the two other axes in turn.
+// A face of a coarse voxel by the rule of columns.glsl, for eight whole children: the mean over four columns of two children along an axis.
+// `along`, `side`, `up`: index steps of the children along this axis and the two others. The second child of a column, `along` after the
+// first, is in front if the column is seen from the higher side.
 vec4 seenThrough(sampler3D face, Children children, int along, int side, int up, bool fromHigher) {
   vec4 values[8];
   for (int i = 0; i < 8; ++i) {

@@ -1,5 +1,5 @@
-// Lists of voxels of a clipmap that need work, each with the dispatch over its items: most voxels are empty or stay as they are, and a pass
-// that is heavy is run for the others alone. A work group takes every gl_NumWorkGroups.x-th group of items.
+// Lists of the voxels of a clipmap that need work, each with the arguments of an indirect dispatch over its items: most voxels are empty or
+// unchanged, and an expensive pass runs only for the others. A work group processes every gl_NumWorkGroups.x-th group of items.
 #ifndef LUMIVOX_CLIPMAP_ITEMS
 #define LUMIVOX_CLIPMAP_ITEMS
 #include "common/list.glsl"
@@ -14,7 +14,7 @@ struct ListHead {
 layout(std430, binding = 11) buffer ListHeads { ListHead heads[]; };
 layout(std430, binding = 12) writeonly buffer ListItems { uint items[]; };
 
-// `each`: invocations for an item.
+// `each`: number of invocations per item.
 void putItem(int list, uint item, uint each) {
   uint place = atomicAdd(heads[list].count, 1u);
   items[place] = item;

@@ -1,4 +1,4 @@
-// A bit for each voxel of a clipmap that is not empty.
+// One bit per voxel of a clipmap, set if the voxel is not empty.
 #ifndef LUMIVOX_CLIPMAP_OCCUPIED
 #define LUMIVOX_CLIPMAP_OCCUPIED
 #ifndef OCCUPIED_ACCESS

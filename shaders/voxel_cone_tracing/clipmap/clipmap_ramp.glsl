@@ -1,8 +1,8 @@
-// How much a level of a clipmap takes from the finer one, by a ramp of the distance from the border of the finer level (thesis 004 Sec. 3.5.2).
-// All numbers here are halves of whole ones, so that whoever asks gets the same bits.
+// The share of a clipmap level's value that comes from the finer level: a ramp of the distance from the finer level's border (thesis 004
+// Sec. 3.5.2). All distances are multiples of one half, so that every pass gets the same bits.
 
-// Where a level ends, in its voxels: from the first on and before the end. `endless`: bits of axes along which the whole store ends there, and
-// those of the higher sides from bit 3 on.
+// The box of a level, in its voxels: from `first` on and before `end`. `endless`: bits of the sides where the whole store ends: the lower
+// sides of x, y, z from bit 0 on, the higher sides from bit 3 on.
 struct LevelEnds {
   ivec3 first, end;
   uint endless;
@@ -14,7 +14,7 @@ LevelEnds endsOf(int level) {
   return LevelEnds(ownFirst[level].xyz, ownEnd[level].xyz, low.x | low.y | low.z | (high.x | high.y | high.z) << 3);
 }
 
-// Of a voxel of the level above. Where the finer level begins, nothing is of it: reading goes on there without a leap.
+// Share of the finer level in a voxel of the level above it: 0 at the border of the finer level, so that reads cross it without a jump.
 float shareOfFiner(LevelEnds finer, ivec3 voxel) {
   uvec3 bits = uvec3(1u, 2u, 4u);
   ivec3 middle = 2 * voxel + 1;

@@ -1,7 +1,7 @@
 #version 450
-// Integer sums to the voxels of a clipmap, as resolve.comp does in a dense grid.
+// Writes the voxels of a clipmap from the integer sums, as resolve.comp does for a dense grid.
 //
-// SAMPLED: opacity by the samples of a voxel's sides.
+// SAMPLED: opacity from the samples of a voxel's sides.
 #pragma lumivox axis SAMPLED 0 1
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 brickCount;
-  float unit;  // W/(sr m^2) that the value 1 of the volumes stands for
+  float unit;  // radiance of the value 1 of the volumes, W/(sr m^2)
 };
 layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
 layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };

@@ -1,16 +1,16 @@
-// The levels of a clipmap side by side, as one grid of which each level is a cube: how fragments and their sums number the voxels of all
-// levels. A row of cubes lies along z, the rows along y.
+// The levels of a clipmap side by side as cubes of one grid, in which fragments and their sums address the voxels of all levels. Rows of
+// cubes run along z; the rows follow each other along y.
 // C++ side: ClipmapStack in techniques/voxel_cone_tracing/clipmap/clipmap.cpp.
 #ifndef LUMIVOX_CLIPMAP_STACK
 #define LUMIVOX_CLIPMAP_STACK
 const int kMostStacked = 12;
 layout(std140, binding = 5) uniform ClipmapStack {
   vec3 stackOrigin;  // corner of voxel (0,0,0) of all levels, m
-  float stackVoxel;  // finest voxels, m
-  int stackSide;     // voxels along a cube
-  int stackRow;      // cubes
+  float stackVoxel;  // size of the finest voxels, m
+  int stackSide;     // voxels along a side of a cube
+  int stackRow;      // cubes per row
   ivec4 stackFirst[kMostStacked];   // voxel of the level at the corner of its cube
-  vec4 stackLimits[kMostStacked];   // most radiance that a voxel of the level can send, W/(sr m^2); voxels along the whole scene
+  vec4 stackLimits[kMostStacked];   // x limit of the radiance of a voxel of the level, W/(sr m^2); y voxels along the whole scene
 };
 
 int levelInStack(ivec3 voxel) {

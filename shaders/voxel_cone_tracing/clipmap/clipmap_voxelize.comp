@@ -1,15 +1,15 @@
 #version 450
-// Fragments of triangles in all levels of a clipmap at once, draw by draw (thesis 004 Sec. 3.5.2, where a geometry shader makes an
-// instance of each triangle for each level): an invocation looks at each triangle and each box of voxels that is filled anew, of whatever level.
-// A level that only moved has such boxes where it reaches anew.
+// Voxelizes triangles into all levels of a clipmap at once, draw by draw (thesis 004 Sec. 3.5.2, where a geometry shader makes an instance
+// of each triangle for each level). One invocation tests each pair of a triangle and a box of voxels to be filled, in any level. A level
+// that only moved has boxes for the newly reached voxels.
 //
-// SAMPLED 0: a fragment for each voxel that a triangle touches.
-// SAMPLED 1: as in Sec. 3.5.2, where multisampled rasterisation does it: eight samples in each column along the dominant axis. Those of a
-// voxel are its opacity, seen along each axis (covered_samples.glsl); emittance is that of the covered share of the voxel's side, by more
-// samples where the triangle is small, so that nothing shines by leaps as it moves (Fig. 56).
-// CHANGED: of some boxes only the voxels in changed cells are filled.
-// STAGE: first it is found which triangles touch what is filled, in most cases a few of them, and these are listed. As in voxelization, one of
-// many voxels is put aside in rows of tiles of 8 x 8 columns, and a work group takes a row; of the others each invocation takes one.
+// SAMPLED 0: one fragment per voxel that a triangle touches.
+// SAMPLED 1: eight samples in each column along the dominant axis, as in Sec. 3.5.2, which uses multisampled rasterisation. The covered
+// samples of a voxel give its opacity along each axis (covered_samples.glsl). Emittance uses the covered share of the voxel's side, with
+// more samples for small triangles, so that the light of a moving object does not jump (Fig. 56).
+// CHANGED: in some boxes, only the voxels in changed cells are filled.
+// STAGE find lists the triangles that touch a box, usually few. As in voxelization, a triangle with many voxels is put aside as rows of
+// tiles of 8 x 8 columns; STAGE large processes one row per work group. STAGE small processes one of the other triangles per invocation.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis STAGE find small large
@@ -30,12 +30,12 @@ layout(std140, binding = 1) uniform Part {
   int triangleCount;
   int capacity;        // fragments
   int rowCapacity;
-  int mostScale;       // SAMPLED: pixels along a voxel, at most
-  float thickness;     // SAMPLED: of a surface seen from the side, voxels
+  int mostScale;       // SAMPLED: largest number of pixels along a voxel
+  float thickness;     // SAMPLED: thickness of a surface seen from the side, voxels
 };
 layout(std140, binding = 2) uniform Boxes {
   ivec4 boxFirst[kMostBoxes];  // voxels of a level; w: the level
-  ivec4 boxEnd[kMostBoxes];    // w: 1: only changed cells
+  ivec4 boxEnd[kMostBoxes];    // w 1: only changed cells are filled
 };
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std430, binding = 7) buffer Count { uint fragmentCount; };
@@ -52,13 +52,13 @@ layout(std430, binding = 9) buffer Rows {
 layout(std430, binding = 11) buffer Few {
   uint fewCount;
   uint fewGroupsX, fewGroupsY, fewGroupsZ;
-  TileRow few[];  // triangles of few voxels; of others from their y on, where there is no room for more rows
+  TileRow few[];  // triangles with few voxels; and the rest, from y on, of triangles for whose rows there was no room
 };
 #if SAMPLED
-layout(std430, binding = 10) writeonly buffer SideMasks { uint sideMasksOf[]; };  // a word a fragment
+layout(std430, binding = 10) writeonly buffer SideMasks { uint sideMasksOf[]; };  // one word per fragment
 #endif
 
-// Of the level that is voxelized.
+// The level that is being voxelized.
 vec3 gridLow;     // m
 float voxelSize;  // m
 int level;
@@ -68,12 +68,12 @@ int level;
 
 #if CHANGED
 #include "clipmap_cells.glsl"
-bool onlyChanges;  // of the box
+bool onlyChanges;  // whether only changed cells of the box are filled
 
 bool isTaken(ivec3 voxel, int axis) {
   return !onlyChanges || clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] != 0u;
 }
-// False where no voxel of these is taken; not all are looked at where they are many.
+// Whether any voxel of a range may be filled; a range of many cells is not searched and gives true.
 bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
   const int kFewCells = 3;
   ivec3 first = unpermute(low, axis) - stackFirst[level].xyz, last = unpermute(high, axis) - stackFirst[level].xyz;
@@ -90,7 +90,7 @@ bool isAnyTaken(ivec3 low, ivec3 high, int axis) { return true; }
 #endif
 
 const int kTile = 8;
-const int kFewVoxels = 64;  // of a triangle that one thread does alone
+const int kFewVoxels = 64;  // largest number of voxels of a triangle for one invocation
 
 void put(ColumnSample s, ivec3 voxel, int axis, float share, uint masks) {
   uint index = atomicAdd(fragmentCount, 1u);
@@ -106,15 +106,15 @@ void put(ColumnSample s, ivec3 voxel, int axis, float share, uint masks) {
 }
 
 #if SAMPLED
-// The pattern of eight samples that devices share, in sixteenths of a pixel from its middle.
+// The standard pattern of eight samples, in sixteenths of a pixel from its corner.
 const int kMostSamples = 8, sampleCount = 8;
 const vec2 samples[kMostSamples] =
     vec2[8](vec2(9, 5) / 16.0, vec2(7, 11) / 16.0, vec2(13, 9) / 16.0, vec2(5, 3) / 16.0, vec2(3, 13) / 16.0, vec2(1, 7) / 16.0,
             vec2(11, 15) / 16.0, vec2(15, 1) / 16.0);
 #include "common/covered_samples.glsl"
 
-// Whether a point lies to the inner side of an edge. Two triangles with that edge come to the same number, so that a point belongs to one of
-// them.
+// Whether a point lies on the inner side of an edge. Both triangles of the edge compute the same number, so that a point belongs to exactly
+// one of them.
 bool inside(vec2 a, vec2 b, vec2 point, float orientation) {
   bool swaps = a.x > b.x || (a.x == b.x && a.y > b.y);
   vec2 low = swaps ? b : a, high = swaps ? a : b;
@@ -163,7 +163,7 @@ void appendSamples(TriangleCorners t, ColumnSample s, ivec2 column, ivec2 slices
 }
 #endif
 
-// All voxels of one column.
+// Appends the fragments of all voxels of one column.
 void appendColumn(TriangleCorners t, Overlap o, MaterialData material, VoxelFragment base, ivec2 column) {
   if (!touchesColumn(o, column)) return;
   ivec2 slices = depthsOfColumn(o, t.corners, column);
@@ -204,7 +204,7 @@ void main() {
     uint count = uint((size.y - 1) / kTile + 1), place = atomicAdd(rowCount, count), fits = min(count, uint(rowCapacity) - min(place, uint(rowCapacity)));
     if (fits > 0u) atomicMax(rowGroupsX, min(place + fits, kMostGroups));
     for (uint i = 0u; i < fits; ++i) rows[place + i] = TileRow(triangle, box, o.low.y + kTile * int(i));
-    first += kTile * int(fits);  // what has no room is slow, but nothing is lost
+    first += kTile * int(fits);  // rows without room go to the `few` list: slow but complete
     if (first > o.high.y) return;
   }
   uint place = atomicAdd(fewCount, 1u);

@@ -5,7 +5,7 @@
 #include "clipmap_occupied.glsl"
 #include "../face_images.glsl"
 
-// The voxel, and its copies beyond the other ends of its block.
+// Writes a voxel, and its copies in the border at the opposite sides of its block.
 void writeVoxel(ClipmapPlace place, vec4 faces[6], bool occupied) {
   ivec3 below = -ivec3(equal(place.address, ivec3(place.period - 1))), above = ivec3(equal(place.address, ivec3(0)));
   for (int z = below.z; z <= above.z; ++z)

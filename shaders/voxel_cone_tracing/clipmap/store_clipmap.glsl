@@ -1,5 +1,5 @@
-// A clipmap of six directional grids: thesis 004, Sec. 3.5.1. Near the border of a level reading goes over to the next coarser one, so that
-// nothing ends with a leap.
+// A clipmap of six directional grids: thesis 004, Sec. 3.5.1. Near the border of a level, reads blend to the next coarser level, so that no
+// edge is visible.
 #include "clipmap.glsl"
 #include "../cones/faces.glsl"
 
@@ -7,11 +7,11 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 vec3 inVoxels(vec3 posWorld, int level) { return (posWorld - clipmapOrigin) / (clipmapVoxel * exp2(float(level))); }
 
-// The finest level from `level` on that is read around a point, and how much of the next one has to be.
+// The finest level, `level` or coarser, that is read at a point. `share`: weight of the next coarser level.
 int finestLevel(vec3 at, int level, out float share) {
   share = 0.0;
   for (; level < clipmapLevels - 1; ++level) {
-    // A voxel before the border the filter would read beyond it.
+    // Less than one voxel before the border, the filter would read beyond it.
     share = clamp(1.0 - (withinReach(level, inVoxels(at, level)) - 1.0) / clipmapBorder, 0.0, 1.0);
     if (share < 1.0) return level;
   }
@@ -27,16 +27,16 @@ float finestVoxel(vec3 at) {
 
 bool readsLayers() { return storeLayers != 0; }
 
-// No step skips a layer of the finer of the two levels that are read.
+// Step limit, m: no step skips a layer of the finer of the two levels that are read.
 float longestStep(float size) { return readsLayers() ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
 
-// Voxels of a level around a point: the block that they are read from.
+// The block from which the voxels of a level around a point are read.
 struct ClipmapBlock {
   vec3 first, end, texel, start;
   float period;
 };
 ClipmapBlock blockAround(vec3 at, int level) {
-  // The filter reads voxels of which all eight are of the finer level's making, or of which those beside others are the same in both.
+  // The inner block is used only where all eight filtered voxels lie in it. At its border, inner and own voxels are equal by the ramp.
   vec3 first = mix(vec3(innerFirst[level].xyz) + 0.5, vec3(-1e30), lessThan(reachFirst[max(level, 1) - 1].xyz, vec3(-kFarAway)));
   vec3 end = mix(vec3(innerEnd[level].xyz) - 0.5, vec3(1e30), greaterThan(reachEnd[max(level, 1) - 1].xyz, vec3(kFarAway)));
   bool inner = level > 0 && level < clipmapLevels && all(greaterThanEqual(at, first)) && all(lessThanEqual(at, end));
@@ -46,7 +46,7 @@ ClipmapBlock blockAround(vec3 at, int level) {
                       float(from.w));
 }
 
-// Where a point lies in the volumes. Beyond the store's own voxels there is nothing: the share of what is filtered that is inside.
+// Texel of a point in the volumes. Beyond the block all is empty: `share` is the filter weight inside the block.
 vec3 texelAround(ClipmapBlock block, vec3 at, out float share) {
   vec3 nearest = clamp(at, block.first + 0.5, block.end - 0.5), beside = clamp(1.0 - abs(at - nearest), 0.0, 1.0);
   share = beside.x * beside.y * beside.z;
@@ -54,7 +54,7 @@ vec3 texelAround(ClipmapBlock block, vec3 at, out float share) {
   return block.texel + address - block.period * step(block.period, address);
 }
 
-// The faces across x, y and z that a cone sees, each around a point of its own.
+// The faces across x, y and z that a cone sees, each read at its own point.
 void facesAround(vec3 atX, vec3 atY, vec3 atZ, ClipmapBlock block, vec3 direction, out vec4 x, out vec4 y, out vec4 z) {
   vec3 size = vec3(textureSize(positiveX, 0));
   float share;
@@ -66,7 +66,7 @@ void facesAround(vec3 atX, vec3 atY, vec3 atZ, ClipmapBlock block, vec3 directio
   z = share * seenAlongZ(direction, texel / size, 0.0);
 }
 
-// All faces at the point itself, filtered along all axes, as Listing 4.15 has it.
+// Listing 4.15: all faces at the point itself, filtered along all axes.
 vec4 interpolated(vec3 posWorld, vec3 direction, int level) {
   vec3 at = inVoxels(posWorld, level), weights = faceWeights(direction);
   vec4 x, y, z;

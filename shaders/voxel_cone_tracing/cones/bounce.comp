@@ -1,8 +1,8 @@
 #version 450
-// One more bounce: the light that cones gather for every fragment through the grid of the bounces before, reflected diffusely and added to
-// the direct light (Crassin et al. 2011 inject direct light alone). Counts fragments anew, as inject.comp does.
+// One more bounce: cones gather light for every fragment from the store of the previous bounces; it is reflected diffusely and added to the
+// direct light (Crassin et al. 2011 inject direct light only). Like inject.comp, it counts the fragments of each voxel.
 //
-// DIRECTIONS: both sides gather. Otherwise a voxel shines the same to all sides, and the side to which more light comes counts.
+// DIRECTIONS: both sides gather separately. Otherwise a voxel emits equally to all sides, and the side that reflects more counts.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox require (STORE == directional || FACES == six) == (DIRECTIONS == 1)
 #pragma lumivox require STORE != clipmap
@@ -18,10 +18,10 @@ layout(std140, binding = 0) uniform Parameters {
   float voxelSize;     // m
   ivec3 brickCount;
   int coneCount;
-  float mostRadiance;  // W/(sr m^2): what no voxel can send
+  float mostRadiance;  // W/(sr m^2): limit of the radiance of a voxel
   int twoSided;        // 1: light on the back side counts as well
 };
-layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // W/(sr m^2): three of each fragment or of each side of one
+layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // r, g, b per fragment or per side of a fragment, W/(sr m^2)
 layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #include "../sums.glsl"
@@ -31,7 +31,7 @@ layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 #endif
 
-// Mean of the arriving radiance, weighted by the cosine. Each fragment has its own cones, which depend on nothing but the fragment.
+// Cosine-weighted mean of the arriving radiance. `place` shifts the cones; it depends only on the fragment.
 vec3 arrivingFrom(vec3 posWorld, vec3 normal, vec2 place) {
   vec3 apex = posWorld + normal * (offset * voxelSize), tangent = tangentTo(normal), bitangent = cross(normal, tangent), sum = vec3(0.0);
   for (int i = 0; i < coneCount; ++i) {
@@ -53,7 +53,7 @@ void main() {
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
   vec2 place = unitInterval(hash4(uvec4(fragment.voxel, fragment.offset, fragment.normal, 0u)).xy);
   vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));  // front, back
-  // One call for both: the march is inlined wherever it is called.
+  // One call for both sides: the march is inlined at every call.
   for (int side = 0; side <= min(twoSided, 1); ++side)
     sides[side] = albedo * arrivingFrom(posWorld, side == 0 ? normal : -normal, place);
 #if DIRECTIONS

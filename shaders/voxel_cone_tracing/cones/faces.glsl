@@ -1,7 +1,7 @@
-// Voxels with six faces, each in a volume of its own, of whichever store. A cone sees the three faces of a voxel whose normals are against it.
+// Voxels with six faces, each in a volume of its own, of any store. A cone sees the three faces of a voxel that face against its direction.
 #include "through_faces.glsl"
 
-// By the outward normals of the faces.
+// Named by the outward normals of the faces.
 layout(binding = 12) uniform sampler3D positiveX;
 layout(binding = 13) uniform sampler3D negativeX;
 layout(binding = 6) uniform sampler3D positiveY;

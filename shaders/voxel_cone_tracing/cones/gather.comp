@@ -4,7 +4,7 @@
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
-// To which side the voxels of the dense grid shine.
+// LOBES: voxels of the dense grid emit by a directional lobe instead of equally to all sides.
 #pragma lumivox axis LOBES 0 1
 #pragma lumivox require !LOBES || STORE == dense
 #include "store.glsl"
@@ -15,10 +15,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int coneCount = 6;
 layout(constant_id = 1) const int publishedCones = 0;
 layout(constant_id = 3) const int glossyCones = 1;
-// No uniforms: a fourth block whose values alone decide something ends the process on a second driver (docs/gpu.md).
-layout(constant_id = 5) const int every = 1;    // one pixel of so many along each axis is gathered
-layout(constant_id = 6) const int pattern = 1;  // pixels in a square of this side have cones of their own
-layout(constant_id = 7) const int arrivingDiffuse = 0;  // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
+// Not uniforms: a fourth uniform block whose values decide a branch crashes a second driver (docs/gpu.md).
+layout(constant_id = 5) const int every = 1;    // every n-th pixel along each axis is gathered
+layout(constant_id = 6) const int pattern = 1;  // cones differ between the pixels of a square of this side
+layout(constant_id = 7) const int arrivingDiffuse = 0;  // 1: writes arriving light, for reconstruct.comp; 0: reflected light
 layout(constant_id = 8) const int arrivingGlossy = 0;   // the same
 
 layout(std140, binding = 0) uniform Parameters {
@@ -44,7 +44,7 @@ void main() {
   vec4 position = texelFetch(gPosition, pixel, 0);
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   bool mirrors = false;
-  int diffuseCones = 0, lobes = 0;  // how many cones each sum has
+  int diffuseCones = 0, lobes = 0;  // number of cones of each sum
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
     vec3 apex = position.xyz;
@@ -61,7 +61,7 @@ void main() {
     vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
     if (mirrors) lobes = glossyCones;
 #endif
-    // Every cone passes through the one call of a march, which is inlined wherever it is called and is nearly all of the code.
+    // One call of the march for all cones: it is inlined at every call, and is nearly all of the code.
     for (int i = 0; i < diffuseCones + lobes; ++i) {
       Cone cone;
       uint number = uint(i);
@@ -89,11 +89,11 @@ void main() {
 #endif
     }
 #if DIFFUSE
-    // Mean of the arriving radiance over the hemisphere, weighted by the cosine.
+    // Cosine-weighted mean of the arriving radiance over the hemisphere.
     if (diffuseCones > 0) diffuse = albedo * (diffuse / (publishedCones != 0 ? kPublishedWeights : float(coneCount)));
 #endif
 #if GLOSSY
-    // Mean over the lobe of the arriving radiance times the cosine of the surface: the integral of both over the specular albedo.
+    // Mean over the lobe of the arriving radiance times the cosine: the reflection integral divided by the specular albedo.
     if (lobes > 0) glossy = (arrivingGlossy != 0 ? vec3(1.0) : specular.rgb) * (glossy / float(lobes));
 #endif
   }

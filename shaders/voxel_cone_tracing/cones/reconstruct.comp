@@ -1,10 +1,10 @@
 #version 450
-// What the cones of some pixels saw, filtered for all of them: a joint bilateral filter (Kopf et al. 2007) guided by the g-buffer, before
-// the light is multiplied by the surface's albedo, so that textures stay sharp.
+// Reconstructs the light of all pixels from the cones of some: a joint bilateral filter (Kopf et al. 2007) guided by the g-buffer. It runs
+// before the multiplication by the surface's albedo, so that textures stay sharp.
 //
-// The samples lie `every` pixels apart, and their cones repeat in squares of side `pattern`. A box as wide as such a square, with ramps of
-// one sample at its ends so that every place in the pattern weighs the same, goes over the samples, along the rows and then along the
-// columns: 2 x 5 looks for a pattern of 4 x 4 in place of 25. Pixels between samples blend the four around them.
+// The samples lie `every` pixels apart, and their cones repeat in squares of side `pattern`. A separable box filter as wide as such a
+// square runs along the rows and then along the columns. It has ramps of one sample at its ends, so that every place in the pattern has the
+// same weight. A pattern of 4 x 4 costs 2 x 5 reads instead of 25. Pixels between samples blend the four samples around them.
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
@@ -14,8 +14,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Parameters {
   ivec2 along;      // the direction of the box, in samples; 0 0: pixels between samples
   int every, pattern;
-  float tolerance;  // m off the surface's plane at which a sample counts 1/e
-  int finishes;     // 1: the mean is written, and where it is that of pixels, times the albedo; 0: the sum, and that of the weights
+  float tolerance;  // distance from the surface's plane, m, at which the weight of a sample falls to 1/e
+  int finishes;     // 1: writes the mean, for pixels times the albedo; 0: writes the sum and, in w, the sum of the weights
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
@@ -30,10 +30,11 @@ layout(binding = 6) uniform sampler2D gatheredGlossy;
 layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
-// The pixel that a sample was gathered for.
+// The pixel for which a sample was gathered.
 ivec2 pixelOf(ivec2 sampleAt) { return min(every * sampleAt + every / 2, textureSize(gPosition, 0) - 1); }
 
-// How far the surface of a pixel is that around a place: 1 where it is. Each keeps a little, for pixels like none of the samples.
+// Similarity of a pixel's surface to the surface at a position: 1 if they are the same. It is at least kLeast for a pixel with a surface,
+// so that pixels similar to no sample get light too.
 float alike(ivec2 pixel, vec3 position, vec3 normal) {
   const float kLeast = 1e-4;
   vec4 other = texelFetch(gPosition, pixel, 0);
@@ -48,7 +49,7 @@ float alike(ivec2 pixel, vec3 position, vec3 normal) {
 }
 
 struct Sums {
-  vec4 diffuse, glossy;  // w: of the weights of the samples
+  vec4 diffuse, glossy;  // w: sum of the weights of the samples
 };
 
 void add(inout Sums sums, ivec2 sampleAt, float weight) {
@@ -60,7 +61,7 @@ void add(inout Sums sums, ivec2 sampleAt, float weight) {
 #endif
 }
 
-// The samples in a box as wide as the pattern around one of them.
+// Weighted sum of the samples in a box as wide as the pattern around one sample.
 Sums inBox(ivec2 sampleAt, ivec2 count, vec3 position, vec3 normal) {
   Sums sums = Sums(vec4(0.0), vec4(0.0));
   int reach = pattern / 2;
@@ -73,7 +74,7 @@ Sums inBox(ivec2 sampleAt, ivec2 count, vec3 position, vec3 normal) {
   return sums;
 }
 
-// The four samples around a pixel.
+// Weighted sum of the four samples around a pixel.
 Sums between(ivec2 pixel, ivec2 count, vec3 position, vec3 normal) {
   Sums sums = Sums(vec4(0.0), vec4(0.0));
   vec2 place = vec2(pixel - every / 2) / float(every);

@@ -1,6 +1,6 @@
 #version 450
-// Direct light at the visible surfaces, where a cone to each light takes the place of a shadow map: Crassin et al. 2011; thesis 004 Sec.
-// 2.4, Fig. 15.
+// Direct light at the visible surfaces, with a cone to each light instead of a shadow map: Crassin et al. 2011; thesis 004
+// Sec. 2.4, Fig. 15.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis EMISSION 0 1
@@ -19,8 +19,8 @@ layout(std140, binding = 2) uniform Shadows {
   float stepShare;   // step along a cone as a share of its diameter
   float offset;      // start of a cone along the normal, in voxels
   float startShare;  // start of a cone along its axis, in voxels
-  float clearance;   // largest voxels that are read as a share of their height over the surface, and over that of an area light
-  float footprint;   // voxels that are read as a share of the cone's diameter
+  float clearance;   // largest size of the voxels read, as a share of their height over the surface and over the surface of an area light
+  float footprint;   // size of the voxels read, as a share of the cone's diameter
   float pixelWidth;  // of a pixel, per metre of distance along its ray
 };
 
@@ -30,33 +30,33 @@ layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 // C++ side: techniques/voxel_cone_tracing/cones/light_discs.h.
 struct LightDisc {
   vec4 centreRadius;  // m
-  vec4 normal;        // of an area light, shorter than 1 where it is curved; else 0
+  vec4 normal;        // mean normal of an area light, shorter than 1 if the light is curved; 0 for other lights
 };
 layout(std430, binding = 6) readonly buffer Discs { LightDisc discs[]; };
 layout(std430, binding = 7) readonly buffer DiscOfSample { uint discOfSample[]; };
 
-const float kFar = 1e30;  // m: of lights without a place
+const float kFar = 1e30;  // m; distance of lights without a position
 
-// A cone and where it ends.
+// A cone and its end.
 struct ShadowCone {
   vec3 direction;
   float reach;       // m, to the light
   float lightRatio;  // diameter of the light over the reach
-  // Height over an area light's plane, over the sphere around a curved one, or over a point, for each metre before its end; 0: over nothing.
+  // Height per metre before the end: over the plane of an area light, the sphere around a curved one, or a point; 0: no limit by the light.
   float rise;
-  float end;         // m, where that height is 0
+  float end;         // m, where this height is 0
 };
 
 ShadowCone coneTo(LightDisc disc, LightSample light, vec3 posWorld, float height, vec3 geometricNormal, vec3 toLight) {
   if (light.kind == kLightDirectional) return ShadowCone(toLight, kFar, 0.0, 0.0, kFar);
   vec3 way = disc.centreRadius.xyz - posWorld;
-  // Of a light that stands half below the surface's plane the middle cannot be seen.
+  // If the centre of the light lies below the surface's plane, the cone goes to the light sample instead.
   if (dot(way, geometricNormal) <= 0.0) way = light.position - posWorld;
-  // The cone begins at this height over the surface, and does not sink to a light that is nearer to it.
+  // The cone begins at this height over the surface, but not above a light that is lower.
   way -= min(height, max(dot(way, geometricNormal), 0.0)) * geometricNormal;
   float reach = length(way), radius = disc.centreRadius.w;
   if (reach == 0.0) return ShadowCone(toLight, 0.0, 0.0, 0.0, 0.0);
-  // Voxels next to a light without extent tell nothing either: it may lie on a surface.
+  // A light without extent has a rise of 1 too: it may lie on a surface, whose voxels must not occlude it.
   ShadowCone cone = ShadowCone(way / reach, reach, 2.0 * radius / reach, 1.0, reach);
   if (light.kind == kLightArea) {
     const float kFlat = 0.9;
@@ -67,8 +67,8 @@ ShadowCone coneTo(LightDisc disc, LightSample light, vec3 posWorld, float height
   return cone;
 }
 
-// The diameter of a cone is the larger of two: that of the cone whose base is the light's disc, and the impact of the eye's cone on the
-// surface, which the thesis gives to all of it (`radius eye`).
+// Visible fraction of a light. The cone's diameter is the larger of two: of the cone whose base is the light's disc, and of the eye's cone
+// at the surface, a constant width that the thesis uses alone (`radius eye`).
 float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
   float voxel = finestVoxel(posWorld), eyeDiameter = radiusOf == kLight ? 0.0 : pixelWidth * length(posWorld - eyeWorld);
   vec3 apex = posWorld + geometricNormal * (offset * voxel);
@@ -94,7 +94,7 @@ float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometr
   return covering.through > 1.0 - kOpaque ? covering.through : 0.0;
 }
 
-// The samples of a light follow each other, and have one cone.
+// The samples of one light follow each other and share one cone.
 uint lastDisc = ~0u;
 float lastShare = 1.0;
 

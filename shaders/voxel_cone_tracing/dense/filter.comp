@@ -1,10 +1,10 @@
 #version 450
-// Pre-filtering of one level from the next finer one (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping).
+// Pre-filters one level from the next finer level (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping).
 //
 // The rule is that of common/coarser_level.glsl: `facing`, or the published mean of the eight children, `average`.
 //
-// OCCUPIED: only the coarse voxels in occupied bricks of 4 x 4 x 4 finest voxels are made; the others are 0 already. A brick has 2 x 2 x 2
-// voxels of level 1 and one of level 2.
+// OCCUPIED: filters only the coarse voxels in occupied bricks of 4 x 4 x 4 finest voxels; the others are 0 already. A brick has 2 x 2 x 2
+// voxels of level 1 and one voxel of level 2.
 #pragma lumivox axis OCCUPIED 0 1
 
 #if OCCUPIED
@@ -25,7 +25,7 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 fine;     // voxels of the level that is read
 };
 layout(binding = 0) uniform sampler3D radianceGrid;
-layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of any float format
 
 vec4 finerVoxel(ivec3 at) { return texelFetch(radianceGrid, at, fineLevel); }
 #include "common/coarser_level.glsl"

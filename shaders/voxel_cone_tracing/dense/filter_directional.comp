@@ -1,9 +1,9 @@
 #version 450
-// One level of the six directional grids from the next finer one (Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3 and 4.2.1,
-// Fig. 64): the children of a column are composited front to back as seen from that side, and the columns are averaged.
+// Filters one level of the six directional grids from the next finer level (Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3 and
+// 4.2.1, Fig. 64): the children of a column are composited front to back as seen from the side of the face, and the columns are averaged.
 //
-// Along an axis a uniform medium of opacity a per voxel gets 1 - (1-a)^2, and a sheet across it keeps its opacity at every level. Both
-// sides of an axis have the same opacity, and radiance of their own.
+// Along an axis, a uniform medium of opacity a per voxel gets 1 - (1-a)^2, and a sheet across the axis keeps its opacity at every level.
+// Both faces of an axis have the same opacity and different radiance.
 //
 // OCCUPIED: only the coarse voxels in occupied bricks of 4 x 4 x 4 finest voxels, as in filter.comp.
 #pragma lumivox axis OCCUPIED 0 1
@@ -23,11 +23,11 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 coarse;      // voxels of the level that is written
-  int levelOfFaces;  // mip of the textures that are read
+  int levelOfFaces;  // mip level of the textures that are read
   ivec3 fine;        // voxels of the level that is read
-  int perBrick;      // of occupied bricks: 8 voxels of the level in a brick, or 1
+  int perBrick;      // OCCUPIED: number of voxels of the level in a brick, 8 or 1
 };
-// By the outward normals of the faces; all six the same texture where the finer level has no faces.
+// Named by the outward normals of the faces; all six are the same texture if the finer level has no faces.
 layout(binding = 0) uniform sampler3D positiveX;
 layout(binding = 1) uniform sampler3D negativeX;
 layout(binding = 2) uniform sampler3D positiveY;
@@ -36,7 +36,7 @@ layout(binding = 4) uniform sampler3D positiveZ;
 layout(binding = 5) uniform sampler3D negativeZ;
 #include "../face_images.glsl"
 
-// A child as seen by who looks towards lower coordinates, at its higher face, and by who looks the other way.
+// The face of a child seen by a ray towards lower coordinates. lowerFace: by a ray towards higher coordinates.
 vec4 higherFace(int axis, ivec3 child) {
   return axis == 0 ? texelFetch(positiveX, child, levelOfFaces)
        : axis == 1 ? texelFetch(positiveY, child, levelOfFaces)

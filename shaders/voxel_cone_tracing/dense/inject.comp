@@ -1,8 +1,8 @@
 #version 450
-// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: light that each fragment reflects diffusely; and of each voxel how many
-// fragments it has and how bright the brightest of them is, which add.comp needs for their average.
+// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: the light that each fragment reflects diffusely. For each voxel, it
+// counts the fragments and finds the largest radiance, which add.comp needs for the average.
 //
-// DIRECTIONS: both sides apart, that of the normal first.
+// DIRECTIONS: both sides separately, the side of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox require PLACES != clipmap || DIRECTIONS
 #pragma lumivox require !REFLECTED || (!CHANGED && PLACES != clipmap)

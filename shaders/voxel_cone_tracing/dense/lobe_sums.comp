@@ -1,6 +1,6 @@
 #version 450
-// Sums of the normals of the lit sides of a voxel's fragments, times the light that they reflect, for lobes of normals (thesis 004, Sec.
-// 3.1.2). As integers, in units of the brightest fragment of the voxel (common/integer_mean.glsl).
+// Sums of the normals of the lit sides of a voxel's fragments, weighted by the light that they reflect, for lobes of normals (thesis 004,
+// Sec. 3.1.2). Integers, in units of the brightest fragment of the voxel (common/integer_mean.glsl).
 #pragma lumivox require PLACES == grid && !CHANGED
 #include "../bricks.glsl"
 #include "common/integer_mean.glsl"
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "lobes.glsl"
 
 layout(std140, binding = 0) uniform Size { ivec3 brickCount; };
-layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each side of a fragment, W/(sr m^2)
+layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // r, g, b per side of a fragment, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
 layout(std430, binding = 5) buffer LobeSums { Lobe lobes[]; };

@@ -1,5 +1,5 @@
 #version 450
-// Integer sums to the finest level of the lobes of normals, of the occupied bricks.
+// Writes the finest level of the lobes of normals from their integer sums, for the occupied bricks.
 #include "common/voxel.glsl"
 #include "../bricks.glsl"
 #include "common/integer_mean.glsl"

@@ -1,4 +1,4 @@
-// Sums of the normals of a voxel's lit surfaces and of the light that they reflect.
+// Sums over a voxel's lit surfaces: xyz of the normals times the light that they reflect, w of that light.
 struct Lobe {
   int sums[4];
 };

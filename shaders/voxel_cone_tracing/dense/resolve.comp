@@ -1,13 +1,13 @@
 #version 450
-// Integer sums to the finest level of the grid: radiance pre-multiplied by opacity, and opacity.
-// An occupied voxel is opaque as far as its fragments cover (thesis 004 Listing 4.10: fully).
+// Writes the finest level of the grid from the integer sums: radiance pre-multiplied by opacity, and opacity. The opacity of an occupied
+// voxel is the coverage of its fragments (thesis 004 Listing 4.10: always 1).
 //
-// With MEDIUM the voxels hold the participating media as well (thesis 004 Sec. 4.5: a regular grid has room for smoke in its empty voxels, so
-// that the cones that look for surfaces see it). A voxel of width w and extinction sigma_t has the opacity 1 - exp(-sigma_t w), and
-// shines with what it scatters of the arriving light, evenly to all sides: a voxel has one radiance for all directions.
+// With MEDIUM the voxels hold the participating media as well (thesis 004 Sec. 4.5: a regular grid has room for smoke in its empty voxels,
+// so that the cones that gather surfaces see it). A voxel of width w and extinction sigma_t has the opacity 1 - exp(-sigma_t w). Its
+// radiance is the light that it scatters, equal in all directions: a voxel has one radiance for all directions.
 //
 // DIRECTIONS: the same for each of the six faces of a voxel.
-// CHANGED: the bricks that are listed hold what was in them before, and voxels that are empty by now are made so.
+// CHANGED: the listed bricks hold values of an earlier frame, so that voxels that have become empty are cleared.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis MEDIUM none even varying
@@ -33,14 +33,14 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 brickCount;
-  float unit;       // W/(sr m^2) that the value 1 of the grid stands for
+  float unit;       // radiance of the value 1 of the grid, W/(sr m^2)
   ivec3 resolution;
-  int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
+  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean
   vec3 gridLow;     // m
   float voxelSize;  // m
   int lightCount;
-  int mediumSteps;     // most steps through a medium that varies, towards a light
-  float mostRadiance;  // W/(sr m^2): what no voxel of this size can send
+  int mediumSteps;     // step limit through a heterogeneous medium, towards a light
+  float mostRadiance;  // limit of the radiance of a voxel of this size, W/(sr m^2)
 };
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #if DIRECTIONS
@@ -59,12 +59,12 @@ void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
 }
 #else
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
-layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of any float format
 
 vec4 surfacesIn(VoxelSums sum) {
   vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
   if (coverageSum != 0) {
-    // The sums hold means over the fragments; radiance keeps its share of the opacity.
+    // The sums hold means over the fragments; radiance over opacity does not change.
     float opacity = min(value.a * float(sum.fragments), 1.0);
     value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
   }
@@ -91,7 +91,7 @@ void main() {
   if (occupied || CHANGED != 0) store(voxel, occupied, sumsOf(brick, item % 64u), vec4(0.0));
 }
 #else
-// The light that reaches a point from all sides, W/m^2.
+// Fluence at a point due to the lights, W/m^2.
 vec3 fluence(vec3 posWorld) {
   vec3 sum = vec3(0.0);
 #if LIGHTS
@@ -112,7 +112,7 @@ float meanDensity(int medium, vec3 low) {
   if (any(lessThanEqual(overlap, vec3(0.0)))) return 0.0;
 #if MEDIUM == MEDIUM_VARYING
   if (!isEven(medium)) {
-    // About as many samples along an axis as it has voxels of the medium.
+    // About one sample per voxel of the medium along each axis.
     const float kMostSamples = 4.0;
     int samples = int(clamp(ceil(voxelSize / media[medium].gridLowVoxel.w), 1.0, kMostSamples));
     float sum = 0.0;
@@ -134,7 +134,7 @@ vec4 mediaIn(ivec3 voxel) {
     depth += media[i].extinction.rgb * extent;
     scattering += media[i].scattering.rgb * extent;
   }
-  // There is one opacity for all channels; what each of them scatters is its own.
+  // One opacity for all channels; each channel scatters by its own depth.
   float opacity = 1.0 - exp(-(depth.r + depth.g + depth.b) / 3.0);
   if (opacity <= 0.0) return vec4(0.0);
   vec3 albedo = mix(scattering / max(depth, vec3(1e-30)), vec3(0.0), equal(depth, vec3(0.0)));
@@ -147,6 +147,6 @@ void main() {
   if (any(greaterThanEqual(voxel, resolution))) return;
   Brick brick = bricks[brickOf(voxel, brickCount)];
   uint bit = bitOf(voxel);
-  store(voxel, isOccupied(brick, bit), sumsOf(brick, bit), mediaIn(voxel));  // media fill what surfaces leave
+  store(voxel, isOccupied(brick, bit), sumsOf(brick, bit), mediaIn(voxel));  // media fill the share that surfaces leave open
 }
 #endif

@@ -15,13 +15,14 @@ bool readsLayers() { return false; }
 layout(binding = 12) uniform sampler3D lobeGrid;
 layout(constant_id = 4) const int publishedLobes = 0;
 
-// The normal distribution function up to x standard deviations (Page 1977), within 3e-4.
+// The cumulative normal distribution at x standard deviations (Page 1977), accurate to 3e-4.
 float belowNormal(float x) { return 0.5 + 0.5 * tanh(clamp(0.79788456 * (x + 0.044715 * x * x * x), -20.0, 20.0)); }
 
-// What the light of voxels is multiplied by, seen along a direction. The normals of the lit sides are a Gaussian lobe around their mean
-// whose variance is (1 - |D|) / |D|; the cone's directions are one whose deviation is the sine of its half angle (as printed the cosine,
-// by which the narrowest cones would be the widest). The share of their convolution that faces the cone, over that of whichever side has
-// more of it: the side that shines keeps its radiance, the other one has what the spread leaves it, and what shines to all sides does.
+// Factor on the light of voxels seen along a direction. The normals of the lit sides form a Gaussian lobe around their mean D, with the
+// variance (1 - |D|) / |D|. The directions of the cone form a lobe whose standard deviation is the sine of its half angle (as printed the
+// cosine, by which the narrowest cones would be the widest). The factor is the share of the convolution of both lobes that faces the cone,
+// divided by the larger of the shares of the two sides. So the bright side keeps its radiance, the other side gets the share that the
+// spread leaves it, and a voxel lit from all sides has the factor 1.
 float facingShare(vec3 texcoord, vec3 direction, float level) {
   vec4 lobe = textureLod(lobeGrid, texcoord, level);
   float size = length(lobe.xyz);

@@ -1,5 +1,5 @@
 // Six directional grids: Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3 and 4.2.1, Listing 4.15. The finest level may be one
-// isotropic grid. A cone sees the three faces of a voxel whose normals are against it.
+// isotropic grid. A cone sees the three faces of a voxel that face against its direction.
 #include "../cones/faces.glsl"
 layout(binding = 4) uniform sampler3D finestGrid;
 
@@ -35,7 +35,7 @@ vec4 layers(vec3 posWorld, vec3 direction, float level, float stride) {
     y = textureLod(finestGrid, atY, 0.0);
     z = textureLod(finestGrid, atZ, 0.0);
   }
-  // Only the finest voxels tell where in the voxel a wall lies.
+  // Only for the finest voxels is the wall assumed in the middle of its layer.
   return throughFaces(x, y, z, direction, texcoord * voxels, (coneApex - storeLow) / storeExtent * voxels, level == 0.0,
                       stride / (exp2(level) * storeVoxel));
 }

@@ -1,6 +1,6 @@
 #version 450
-// The bricks of each depth, and the dispatches over them, so that no count travels to the host. Where there is too little room the tree stays
-// empty; the host learns how much is wanted when the frame is done.
+// Writes the range of bricks of each depth and the arguments of indirect dispatches over them, without a read-back. If there is too little
+// room, the tree stays empty, and the host reads the wanted sizes after the frame.
 #define OCTREE_BUILD
 #include "toolkit/bit_tree.glsl"
 layout(local_size_x = 16) in;
@@ -11,7 +11,7 @@ layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRank
 uint firstBrickOf(int depth) { return octreeRanks[firstWord(depth)].nodesBefore; }
 
 void main() {
-  int depth = int(gl_GlobalInvocationID.x);  // one more: all of them
+  int depth = int(gl_GlobalInvocationID.x);  // octreeDepth + 1: all depths together
   if (depth > octreeDepth + 1) return;
   uint first = depth <= octreeDepth ? firstBrickOf(depth) : 0u;
   uint end = depth < octreeDepth ? firstBrickOf(depth + 1) : wantedBricks;

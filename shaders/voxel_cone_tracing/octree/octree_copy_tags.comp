@@ -1,5 +1,5 @@
 #version 450
-// The tags of static geometry, to which those of what moves are added.
+// Copies the tags of static geometry, to which those of moving geometry are added.
 #include "toolkit/bit_tree.glsl"
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

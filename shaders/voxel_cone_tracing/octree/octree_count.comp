@@ -1,5 +1,5 @@
 #version 450
-// Counts the tagged nodes, and those that are shown, in chunks of words.
+// Counts the tagged nodes and the shown nodes in chunks of words.
 #include "octree_tags.glsl"
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

@@ -1,13 +1,13 @@
 #version 450
-// Pre-filtering of one level of an octree from the next finer one as filter.comp does it: the eight children of a coarse voxel are the voxels
-// of one child's brick.
+// Pre-filters one level of an octree from the next finer level by the rule of filter.comp: the eight children of a coarse voxel are the
+// voxels of one child's brick.
 //
-// Deviates from Crassin et al. 2011, Sec. 5, where coarse voxels lie at the corners of nodes: a wall one voxel thick that lies between two of
-// them makes both opaque there, and grows to three of them in trilinear reading.
+// Deviates from Crassin et al. 2011, Sec. 5, where coarse voxels lie at the corners of nodes: there a wall one voxel thick between two
+// coarse voxels makes both opaque, and trilinear reads widen it to three coarse voxels.
 //
-// LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
-// CHANGED: what has not changed since static geometry was lit is copied from there.
-// DIRECTIONS: voxels with six faces, as filter_directional.comp does it.
+// LIT: only the bricks that photons have changed (octree_lit.comp); the others are complete.
+// CHANGED: bricks that have not changed since static geometry was lit are copied from the static octree.
+// DIRECTIONS: voxels with six faces, by the rule of filter_directional.comp.
 #pragma lumivox axis LIT 0 1
 #pragma lumivox axis CHANGED 0 1
 #pragma lumivox axis DIRECTIONS 0 1
@@ -38,7 +38,7 @@ vec4 lowerFace(int axis, ivec3 child) { return texelFetch(pool, texelOf(brickOfF
 #include "../columns.glsl"
 const uint kFaces = kBrickFaces;
 
-// The faces of the voxel that the voxels of a brick make; kNone: nothing is there.
+// The faces of the coarse voxel whose children are the voxels of brick `finer`; kNone: an empty voxel.
 void filtered(uint finer, out vec4 faces[kFaces]) {
   for (uint face = 0u; face < kFaces; ++face) faces[face] = vec4(0.0);
   if (finer == kNone) return;

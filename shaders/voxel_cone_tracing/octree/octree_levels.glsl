@@ -1,4 +1,4 @@
-// The bricks of an octree by their depths, for passes over them. Included after the local size of kOctreeGroup, which is along x alone.
+// The bricks of an octree by depth, for passes over them. Included after the local size of kOctreeGroup, which is along x only.
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/octree/radiance_octree.h, forEachBrick in octree.h.
 #ifndef LUMIVOX_OCTREE_LEVELS
 #define LUMIVOX_OCTREE_LEVELS
@@ -7,7 +7,7 @@
 #include "octree.glsl"
 
 const uint kOctreeGroup = 64u;
-// So many threads a brick have dispatches of their own.
+// Numbers of threads per brick for which dispatch arguments exist.
 const uint kThreads[2] = uint[2](1u, kBrickVoxels);
 
 struct OctreeLevel {
@@ -16,14 +16,14 @@ struct OctreeLevel {
 };
 
 layout(std430, binding = 10) OCTREE_ACCESS buffer OctreeLevels {
-  uint wantedBricks, wantedShown;  // all that the fragments ask for, whether there is room or not
+  uint wantedBricks, wantedShown;  // needed by the fragments, even if there is too little room
   uint wantedLeaves;               // bricks of the finest level
-  OctreeLevel octreeLevels[];      // by depth; and one behind for all depths together
+  OctreeLevel octreeLevels[];      // by depth, then one entry for all depths together
 };
-// Of each brick, by depth, the place of its node, in nodes of its depth, 10 bits an axis.
+// For each brick, ordered by depth, the position of its node in nodes of its depth, 10 bits per axis.
 layout(std430, binding = 11) OCTREE_ACCESS buffer OctreeBricks { uint octreeBricks[]; };
 
-// The brick of this thread at a depth, and which of its brick's threads it is; false behind the last.
+// The brick of this invocation at a depth, and the number of the invocation within the brick; false past the last brick.
 bool itemOf(int depth, uint threads, out uint brick, out uint lane) {
   uint item = listIndex();
   brick = octreeLevels[depth].firstBrick + item / threads;

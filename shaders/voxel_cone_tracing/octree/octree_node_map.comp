@@ -1,5 +1,5 @@
 #version 450
-// The finest level of the node map: the voxel that each photon lies in, as if it were a node below its leaf (Crassin et al. 2011, Sec. 6).
+// The finest level of the node map: the voxel that contains each photon, encoded as a node below its leaf (Crassin et al. 2011, Sec. 6).
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"
 
@@ -13,7 +13,7 @@ layout(binding = 1) uniform sampler2DArray photonNormal;
 layout(binding = 2) uniform sampler3D pool;
 layout(binding = 0, r32ui) uniform writeonly uimage2DArray nodeMap;
 
-// 0: no surface is there.
+// Code of the voxel at a point; 0: the voxel is empty.
 uint voxelAt(vec3 at) {
   ivec3 voxel = ivec3(floor(at));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, ivec3(2 << octreeDepth)))) return 0u;
@@ -29,8 +29,8 @@ void main() {
   vec4 position = texelFetch(photonPosition, texel, 0);
   uint code = 0u;
   if (position.w > 0.0) {
-    // A surface on the face between two voxels lies in both of them or in one to the voxelizer, and by rounding in any to the photon: the one
-    // before the surface is what others see of it.
+    // The voxelizer puts a surface on the face between two voxels into one or both of them, and rounding may put the photon into the other.
+    // The voxel in front of the surface, which other surfaces see, is tried first.
     const float kRounding = 0.01;  // voxels
     vec3 at = (position.xyz - gridLow) / voxelSize, aside = kRounding * texelFetch(photonNormal, texel, 0).xyz;
     code = voxelAt(at + aside);

@@ -1,5 +1,5 @@
 #version 450
-// A coarser level of the node map: the lowest common ancestor of the nodes of four texels, and of those that an odd size leaves over.
+// A coarser level of the node map: the lowest common ancestor of the nodes of 2 x 2 texels, and of the third row or column at an odd end.
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"
 

@@ -1,6 +1,6 @@
 #version 450
-// Writes the places of the bricks, and the bricks around the nodes that are shown: all depths at once, and the same tree at every run (thesis
-// 004, Sec. 4.2.2, Listing 4.22 takes places from atomic counters, depth after depth).
+// Writes the positions of the bricks, and the bricks around the shown nodes, for all depths at once. The tree is the same at every run.
+// (Thesis 004, Sec. 4.2.2, Listing 4.22 allocates nodes by atomic counters, depth after depth.)
 #define OCTREE_BUILD
 #include "toolkit/bit_tree.glsl"
 layout(local_size_x = 64) in;

@@ -1,8 +1,10 @@
 #version 450
-// What the photons of a voxel reflect. Their sum, so that no flux is lost where they lie further apart than voxels (Crassin et al. 2011, Sec. 6):
-// a surface with the normal n meets |nx| + |ny| + |nz| voxels of the width w for each area w^2 that it has. Or, of one light, their average by
-// the areas that they stand for (as thesis 004, Sec. 4.2.2, Listing 4.24, averages them). Deviates from that listing: neither depends on the order
-// (common/integer_mean.glsl), and photons reflect what they do themselves in place of the average surface of the voxel.
+// The radiance that the photons of a voxel reflect, by one of two rules:
+// - kSum: their sum, so that no flux is lost where photons lie further apart than voxels (Crassin et al. 2011, Sec. 6). A surface with the
+//   normal n meets |nx| + |ny| + |nz| voxels of width w per area w^2.
+// - kAverage: for one light, their average weighted by the areas that they represent (thesis 004, Sec. 4.2.2, Listing 4.24). Deviates:
+//   photons have their own reflected flux instead of the average reflectance of the voxel's surface.
+// Neither depends on the order of the photons (common/integer_mean.glsl), unlike the listing.
 #pragma lumivox axis STAGE count add
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"
@@ -14,7 +16,7 @@ layout(constant_id = 0) const int rule = kSum;
 
 layout(std140, binding = 0) uniform PhotonsOfLight {
   ivec3 mapSize;  // texels, layers
-  int light;      // whose photons count for averages
+  int light;      // kAverage: the light whose photons count
   float voxelSize;  // m
 };
 layout(binding = 1) uniform sampler2DArray photonNormal;
@@ -33,7 +35,7 @@ void main() {
   uint brick = brickOfCode(code >> 3);
   if (brick == kNone) return;
   uint place = 8u * (brick - octreeLevels[octreeDepth].firstBrick) + (code & 7u);
-  // A Lambert surface that reflects a flux from an area has the radiance flux / (pi area).
+  // A Lambertian surface that reflects a flux from an area has the radiance flux / (pi area).
   vec3 steepness = abs(normalArea.xyz);
   float inVoxel = voxelSize * voxelSize / (steepness.x + steepness.y + steepness.z);
   vec3 radiance = max(flux.rgb, 0.0) / (kPi * (rule == kSum ? inVoxel : area));

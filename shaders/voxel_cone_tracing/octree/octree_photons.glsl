@@ -8,16 +8,16 @@
 // The photons of one voxel.
 struct PhotonSums {
   uint photons;
-  uint brightest, largestArea;  // bits of floats: for numbers from 0 on their order is that of the numbers
+  uint brightest, largestArea;  // bits of non-negative floats, which order like the floats
   uint red, green, blue, weight;  // shares of averages, in units of kFixedPoint
 };
 
-// A node by its way from the root: a 1, and three bits for each depth. 0: none.
+// Code of a node, its path from the root: a 1, then three bits per depth. 0: no node.
 uint codeOf(ivec3 place, int depth) { return 1u << 3 * depth | mortonOf(place); }
 int depthOf(uint code) { return findMSB(code) / 3; }
 uint ancestorOf(uint code, int depth) { return code >> 3 * (depthOf(code) - depth); }
 
-// The deepest node that both lie in, which may be one of them.
+// The deepest node that contains both nodes; it may be one of them.
 uint commonAncestor(uint a, uint b) {
   if (a == 0u || b == 0u) return a | b;
   int depth = min(depthOf(a), depthOf(b));
@@ -26,7 +26,7 @@ uint commonAncestor(uint a, uint b) {
   return differing == 0u ? a : a >> 3 * (findMSB(differing) / 3 + 1);
 }
 
-// kNone where there is none, or where the tree had too little room and is empty.
+// The brick of a node; kNone if there is no such node, or if the tree is empty because it had too little room.
 uint brickOfCode(uint code) {
   if (octreeLevels[octreeDepth].bricks == 0u) return kNone;
   int depth = depthOf(code);

@@ -1,5 +1,5 @@
 #version 450
-// How many nodes, and nodes that are shown, lie before those of each word of tags.
+// Writes the number of tagged nodes, and of shown nodes, before each word of tags.
 #include "octree_tags.glsl"
 layout(local_size_x = 64) in;
 #include "common/list.glsl"

@@ -1,4 +1,4 @@
-// Bricks of nodes by counting: a node's brick is the number of nodes that are tagged before it, in two reads whatever its depth.
+// Bricks of nodes: a node's brick is the number of tagged nodes before it, found in two reads at any depth.
 #ifndef LUMIVOX_OCTREE_RANKS
 #define LUMIVOX_OCTREE_RANKS
 #include "octree.glsl"
@@ -6,7 +6,7 @@
 
 layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
 
-// Of a node by its place along the curve of its depth; kNone: there is none.
+// The brick of a node, given by its place along the curve of its depth; kNone: no such node.
 uint rankedBrick(uint morton, int depth) {
   return rankIn(octreeRanks[firstWord(depth) + (morton >> 5)], morton);
 }

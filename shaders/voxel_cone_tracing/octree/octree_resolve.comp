@@ -1,8 +1,8 @@
 #version 450
-// Integer sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity; resolve.comp says how.
+// Writes the bricks of the leaves from the integer sums: radiance pre-multiplied by opacity, and opacity, as resolve.comp does.
 //
-// CHANGED: what has not changed since static geometry was lit is copied from there, a brick by one thread.
-// DIRECTIONS: the six faces of each voxel, which is one of its leaf's own.
+// CHANGED: bricks that have not changed since static geometry was lit are copied from the static octree, one thread per brick.
+// DIRECTIONS: the six faces of each voxel.
 #pragma lumivox axis CHANGED 0 1
 #pragma lumivox axis DIRECTIONS 0 1
 layout(local_size_x = 64) in;
@@ -15,10 +15,10 @@ layout(local_size_x = 64) in;
 #endif
 
 layout(std140, binding = 0) uniform Leaves {
-  float unit;       // W/(sr m^2) that the value 1 of the pool stands for
-  int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
+  float unit;       // radiance of the value 1 of the pool, W/(sr m^2)
+  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean
 };
-layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the pool has
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of any float format
 
 #if DIRECTIONS
 layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
@@ -33,7 +33,7 @@ const uint kFaces = 1u;
 vec4 surfacesIn(VoxelSums sum) {
   vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
   if (coverageSum != 0) {
-    // The sums hold means over the fragments; radiance keeps its share of the opacity.
+    // The sums hold means over the fragments; radiance over opacity does not change.
     float opacity = min(value.a * float(sum.fragments), 1.0);
     value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
   }

@@ -1,7 +1,7 @@
-// A sparse voxel octree: Crassin et al. 2011, Sec. 4 and 7. Where the tree ends there is nothing, and nothing is read. The bricks around a node
-// are known by it, and it is found by counting the tags before its own, in two reads whatever the depth.
+// A sparse voxel octree: Crassin et al. 2011, Sec. 4 and 7. Space without nodes is empty, and no voxels are read there. Each node lists the
+// bricks around it; the node is found by the number of tags before its own, in two reads at any depth.
 //
-// FACES: six: each voxel has six faces, read by the rules of the six directional grids.
+// FACES six: each voxel has six faces, read by the rules of the six directional grids.
 #pragma lumivox axis FACES one six
 #pragma lumivox require FACES == one || STORE == octree
 #include "octree.glsl"
@@ -15,7 +15,7 @@ float finestVoxel(vec3 at) { return storeVoxel; }
 
 #if FACES == FACES_SIX
 #include "../cones/through_faces.glsl"
-// The faces that the cone sees, across x, y and z, and how much of each is to be read.
+// The faces that the cone sees, across x, y and z, and their weights.
 uvec3 facesSeen;
 vec3 shareOfFaces;
 
@@ -35,16 +35,16 @@ vec4 voxelIn(uint brick, ivec3 voxel) {
 vec4 voxelIn(uint brick, ivec3 voxel) { return texelFetch(brickPool, texelOf(brick) + voxel, 0); }
 #endif
 
-// Voxels are filtered here and not by a sampler, whose coordinates are rounded by where in which pool the brick lies: a frame would differ
-// from the same frame alone. No loops but the published reading of six faces: of all turns of all loops of a shader some drivers allow 65535,
-// which many cones come to.
+// Voxels are filtered here instead of by a sampler. A sampler rounds its coordinates depending on the brick's position in the pool, so that
+// the same frame could differ between runs. There are no loops, except in the published reading of six faces: some drivers allow 65535
+// iterations of all loops of a shader together, which many cones reach.
 //
-// Those of a level around a point, `from` voxels from the middle of its voxel 0. Outside of the grid there is nothing.
+// The eight voxels of a level around a point, `from` voxels from the centre of voxel 0. Outside the grid all is empty.
 struct Around {
-  uint corners;  // kNone: there is nothing
+  uint corners;  // index into octreeCorners; kNone: empty
   ivec3 own;     // the lowest voxel, in its brick
-  uint crossed;  // axes along which the higher voxels are in the next brick
-  vec3 part;     // voxels from there
+  uint crossed;  // bits of the axes along which the higher voxels are in the next brick
+  vec3 part;     // offset of the point from the lowest voxel, in voxels
 };
 
 Around voxelsAround(vec3 from, int depth) {
@@ -53,7 +53,7 @@ Around voxelsAround(vec3 from, int depth) {
   return Around(cornersOf(mortonOf(low >> 1), depth), own, uint(own.x | own.y << 1 | own.z << 2), clamp(from - at, vec3(-1.0), vec3(1.0)));
 }
 
-// The share of one of the eight: of bit 0, 1, 2 whether it is the higher one along x, y, z.
+// Weighted value of one of the eight voxels: bits 0, 1, 2 of `which` are set for the higher voxel along x, y, z.
 vec4 shareOfVoxel(Around around, uint which) {
   bvec3 higher = bvec3((which & 1u) != 0u, (which & 2u) != 0u, (which & 4u) != 0u);
   vec3 weights = mix(1.0 - abs(around.part), max(around.part, vec3(0.0)), higher);
@@ -66,7 +66,7 @@ vec4 amongVoxels(vec3 from, int depth) {
   Around around = voxelsAround(from, depth);
   if (around.corners == kNone) return vec4(0.0);
 #if FACES == FACES_SIX
-  // As published: eight voxels of three faces each are much to write out.
+  // A loop, because eight voxels of three faces each are too much unrolled code.
   vec4 value = vec4(0.0);
   for (uint which = 0u; which < 8u; ++which) value += shareOfVoxel(around, which);
   return value;
@@ -76,7 +76,7 @@ vec4 amongVoxels(vec3 from, int depth) {
 #endif
 }
 
-// Of those whose place along an axis is a whole number: the four across it.
+// Bilinear value of the four voxels of a layer across an axis; `from` is an integer along this axis.
 vec4 acrossAxis(vec3 from, int depth, int axis) {
   Around around = voxelsAround(from, depth);
   if (around.corners == kNone) return vec4(0.0);
@@ -84,7 +84,7 @@ vec4 acrossAxis(vec3 from, int depth, int axis) {
   return shareOfVoxel(around, 0u) + shareOfVoxel(around, side) + shareOfVoxel(around, up) + shareOfVoxel(around, side | up);
 }
 
-// Values of a level around a point, finest voxels from storeLow.
+// Trilinear value of a level at a point, in finest voxels from storeLow.
 vec4 readLevel(vec3 at, int level) { return amongVoxels(at * exp2(float(-level)) - 0.5, octreeDepth - level); }
 
 #if FACES == FACES_SIX
@@ -96,7 +96,7 @@ vec4 interpolated(vec3 posWorld, vec3 direction, float level) {
   return mix(finer, coarser, fract(level));
 }
 
-// The face across an axis by the layer of voxels around a point of a level, in its voxels.
+// The face across an axis, read from the layer of voxels that contains a point of a level, in voxels of the level.
 vec4 layerAcross(vec3 at, vec3 direction, int level, int axis) {
   vec3 share = vec3(0.0), from = at - 0.5;
   share[axis] = 1.0;

@@ -1,5 +1,5 @@
 #version 450
-// What the camera sees of a store through a thin lens, a cone a pixel: Crassin et al. 2011; thesis 004 Sec. 2.4, Fig. 16; Amanatides 1984.
+// View of a store through a thin lens, one cone per pixel: Crassin et al. 2011; thesis 004 Sec. 2.4, Fig. 16; Amanatides 1984.
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
 #include "../cones/surfaces.glsl"
@@ -17,23 +17,23 @@ layout(std140, binding = 0) uniform Lens {
   vec3 eyeWorld;
   float aperture;     // diameter of the lens, m
   vec3 corner;        // direction through the upper left corner of the image, 1 along the view axis
-  float focus;        // distance of the plane in focus along the view axis, m; where the aperture is 0: not read
-  vec3 perColumn;     // of that direction, from pixel to pixel
+  float focus;        // distance of the plane in focus along the view axis, m; not read if the aperture is 0
+  vec3 perColumn;     // change of that direction from pixel to pixel
   float pixelWidth;   // of a pixel at a distance of 1 m along the view axis
   vec3 perRow;
   float stepShare;    // step along a cone as a share of its diameter
-  vec3 environment;   // radiance of a cone that meets nothing
-  float footprint;    // voxels that are read as a share of the cone's diameter
+  vec3 environment;   // radiance of an unoccluded cone
+  float footprint;    // size of the voxels read, as a share of the cone's diameter
 };
 
 layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 
-const int kMediumSteps = 8;  // most steps through a medium that varies, within one step of a cone
+const int kMediumSteps = 8;  // step limit through a heterogeneous medium, within one step of a cone
 
-// Diameter of the cone at a depth along the view axis. What a pixel gathers there is its square smeared out by the lens's disc, which is
-// pointed at the plane in focus.
-// - kDoubleCone: two of Amanatides' cones, point to point in that plane: their diameters add up to the lens's and the pixel's. The first has
-//   its virtual origin behind that plane, the second before it.
+// Diameter of the cone at a depth along the view axis. The footprint of a pixel there is the pixel's square convolved with the disc of the
+// lens, which shrinks to a point in the plane in focus.
+// - kDoubleCone: two of Amanatides' cones, point to point in that plane: their diameter is the sum of those of lens and pixel. The first
+//   cone has its virtual origin behind that plane, the second before it.
 // - kSpread: the disc with the variance of both, D^2 / 16 = L^2 / 16 + P^2 / 12 along each axis.
 // Without a lens both are one cone from the eye: the anti-aliased ray.
 float diameterAt(float depth) {
@@ -63,7 +63,7 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
 #endif
     StoreSample found = readStore(middle, direction, wanted, stride);
     float share = asMedium != 0 ? coverByMedium(covering, found) : cover(covering, found, wanted, stride);
-    // Radiance over opacity is that of what is there.
+    // Radiance over opacity is the radiance of the surfaces themselves.
     if (share > 0.0) radiance += passed * (share / found.value.a * found.value.rgb);
 #if MEDIUM != MEDIUM_NONE
     passed *= exp(-0.5 * thickness);
@@ -75,7 +75,7 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
 #if MEDIUM != MEDIUM_NONE
   if (covering.through > 1.0 - kOpaque) passed *= exp(-opticalDepth(eyeWorld + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
-  // What is left of a cone that ended early is not the environment's.
+  // A cone that ended early, as opaque, gets no light from the environment.
   if (covering.through > 1.0 - kOpaque) radiance += passed * (covering.through * environment);
 #endif
   return radiance;

@@ -1,5 +1,5 @@
 #version 450
-// What each voxel of a field emits and how opaque it is, for marches between voxels (thesis 004 Sec. 2.3).
+// Emission and opacity of each voxel of a field, for ray marches with interpolation (thesis 004 Sec. 2.3).
 #include "toolkit/voxel_transfer.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -1,5 +1,5 @@
 #version 450
-// Ray and cone casting between the middles of voxels that emit and absorb: thesis 004 Sec. 2.3, Fig. 14 and 57.
+// Ray and cone casting through emitting and absorbing voxels, filtered between their centres: thesis 004 Sec. 2.3, Fig. 14 and 57.
 #pragma lumivox require SOURCE == texels && OPACITY == solid
 #include "toolkit/voxel_rays.glsl"
 #include "toolkit/voxel_transfer.glsl"
@@ -30,7 +30,7 @@ void main() {
     float level = levelOf(size, coarsest, blend);
     float stride = min(stepShare * size * finest, inside.y - distance);
     vec3 texcoord = (eye + direction * (distance + 0.5 * stride) - gridLow) / extent;
-    // The mean of opacities of the finest voxels' length stays one of that length.
+    // Coarser levels are means of opacities per length of a finest voxel, so every level has opacity per that length.
     vec4 value;
     if (filterRule == kNearest) {
       ivec3 voxels = textureSize(classified, int(level));

@@ -1,5 +1,5 @@
 #version 450
-// A coarser level for cones: the mean over the children that a coarse voxel shares in.
+// A coarser mip level for cones: the mean over the children that a coarse voxel overlaps, weighted by the overlap.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Mean {

@@ -1,7 +1,7 @@
-// The list of those texels of the atlas that lie on the surface (Thiedemann et al. 2011; thesis 004 Sec. 4.4.2, 4.4.3): for each the
-// triangle and the place on it. Including files declare grid_corner.glsl before.
-// Deviates: the atlas does not hold positions that are drawn into it anew when something moves, but places on triangles, which stay; and
-// the list of its texels was made with it, so that nothing is read back.
+// The list of the atlas texels that lie on the surface (Thiedemann et al. 2011; thesis 004 Sec. 4.4.2, 4.4.3), each with its triangle and
+// the place on the triangle. Including files first include grid_corner.glsl.
+// Deviates: the atlas holds places on triangles, which stay valid, instead of positions, which are rendered again when something moves. The
+// list of its texels is created together with the atlas, without a read-back.
 #include "common/list.glsl"
 
 layout(std430, binding = 9) readonly buffer TexelTriangles { uint texelTriangles[]; };
@@ -26,7 +26,7 @@ SurfacePlace placeOf(int texel) {
   return place;
 }
 
-// The texel of this thread, or -1.
+// The texel of this invocation, or -1.
 int texelOfThread() {
   int item = int(listIndex());
   return item < texelCount ? firstTexel + item : -1;

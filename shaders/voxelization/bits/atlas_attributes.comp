@@ -1,5 +1,5 @@
 #version 450
-// Multi-valued voxels from the atlas (Thiedemann et al. 2011): each texel leaves a fragment with the attributes of its place.
+// Multi-valued voxels from the atlas (Thiedemann et al. 2011): each texel appends a fragment with the attributes at its place.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
 #version 450
-// Each fragment adds its share of the averages over its voxel (common/integer_mean.glsl). The range of emission is the voxel's own.
+// Each fragment adds its share of the averages over its voxel (common/integer_mean.glsl). Emission has a range per voxel.
 #pragma lumivox axis ATTRIBUTES 0 1
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox require !EMISSION || ATTRIBUTES

@@ -1,10 +1,10 @@
 #version 450
-// The largest emitted radiance of a component among the fragments of each voxel: the unit in which average_add.comp adds them up, so that a
-// dim voxel keeps its light in a grid with a very bright one.
+// The largest component of emitted radiance among the fragments of each voxel: the unit of the sums of average_add.comp, so that a dim
+// voxel keeps its light in a grid with a very bright one.
 #include "average.glsl"
 #include "toolkit/slot_of_voxel.glsl"
 
-layout(std430, binding = 5) buffer Brightest { uint brightest[]; };  // bits of a float: for numbers from 0 on their order is that of the numbers
+layout(std430, binding = 5) buffer Brightest { uint brightest[]; };  // bits of a non-negative float, which order like the float
 
 void main() {
   uint index = listIndex();

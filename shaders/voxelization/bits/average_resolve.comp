@@ -1,5 +1,5 @@
 #version 450
-// Sums to averages: opacity by the rule of the list, attributes weighted by coverage.
+// Turns sums into averages: opacity by the rule of the list, attributes weighted by coverage.
 #pragma lumivox axis ATTRIBUTES 0 1
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis OPACITY 0 1
@@ -28,7 +28,7 @@ void main() {
   uint slot;
   ivec3 voxel;
   if (!slotHere(slot, voxel)) return;
-  // Against what full coverages add up to, rounded as each of them was: a voxel that all of its fragments fill is opaque, exactly.
+  // Relative to the sum of full coverages, which has the same rounding: a voxel whose fragments all have coverage 1 is exactly opaque.
   uint fragments = fragmentsOfSlot[slot];
   float mean = float(coverageSums[slot]) / float(fragments * fullShare(fragments));
   float opacity = min(coverageSum != 0 ? mean * float(fragments) : mean, 1.0);
@@ -36,7 +36,7 @@ void main() {
   imageStore(opacityImage, voxel, vec4(opacity));
 #endif
 #if ATTRIBUTES
-  // Coverages of nothing at all leave no average.
+  // If all coverages are 0 there is no average.
   float inverse = mean > 0.0 ? kFixedPoint / float(coverageSums[slot]) : 0.0;
   vec3 albedo = meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u]);
   vec3 normal = signedMeanOf(normalSums[3u * slot], normalSums[3u * slot + 1u], normalSums[3u * slot + 2u]);

@@ -1,8 +1,8 @@
 // One bit per voxel in 32-bit words along z: bit b of texel (i, j, w) is voxel (i, j, 32 w + b).
 #pragma lumivox axis SURFACE 0 1
-layout(binding = 0, r32ui) uniform readonly uimage3D words;  // what was voxelized
+layout(binding = 0, r32ui) uniform readonly uimage3D words;  // the voxelized bits
 #if SURFACE
-layout(binding = 1, r32ui) uniform readonly uimage3D surfaceWords;  // voxels of surface samples that were given
+layout(binding = 1, r32ui) uniform readonly uimage3D surfaceWords;  // voxels of the given surface samples
 #endif
 
 uint surfaceWordAt(ivec3 place) {
@@ -13,7 +13,7 @@ uint surfaceWordAt(ivec3 place) {
 #endif
 }
 
-// The 32 voxels of both in one word; none outside the grid.
+// The 32 voxels of a word in either image; 0 outside the grid.
 uint wordAt(ivec3 place) {
   if (place.z >= imageSize(words).z) return 0u;
   return imageLoad(words, place).r | surfaceWordAt(place);

@@ -1,5 +1,5 @@
 #version 450
-// Static geometry, under what moves.
+// Copies the bits of static geometry, to which moving geometry is added.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0, r32ui) uniform readonly uimage3D source;

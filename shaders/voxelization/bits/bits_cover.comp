@@ -1,5 +1,5 @@
 #version 450
-// The bits of voxels whose fragments cover them together: by the sum of their coverages. One invocation a word.
+// Bits decided by the sum of the coverages of a voxel's fragments. One invocation per word.
 #include "common/voxel.glsl"
 #include "../masks.glsl"
 

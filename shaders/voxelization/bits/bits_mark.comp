@@ -1,8 +1,8 @@
 #version 450
-// The voxels of a list of fragments. Of fragments that cover a part of their voxel each is judged by itself, by one rule for all of a voxel:
-// the one that covers most decides, and a wall keeps its voxels beside a lattice.
+// Sets the bits of the voxels of a list of fragments. Each partly covering fragment is tested alone, by a rule that is the same for all
+// fragments of a voxel. The fragment with the largest coverage thus decides, and a wall keeps its voxels beside a lattice.
 
-// MOVING: those that move, which lie behind the others in the list; columns that get a bit are told.
+// MOVING: only moving fragments, which follow the static ones in the list; columns that get a bit are marked in `touched`.
 #pragma lumivox axis MOVING 0 1
 
 layout(local_size_x = 64) in;

@@ -1,7 +1,7 @@
 #version 450
-// A coarser level of the stacks: the union of two by two, and of what is left over at an odd end (thesis 004 Sec. 4.4.5). The depth
-// keeps its resolution.
-// TOUCHED: only of texels above columns in which something moves or moved.
+// A coarser level of the stacks: the union of 2x2 stacks, and of the third row or column at an odd end (thesis 004 Sec. 4.4.5). The
+// resolution along z stays the same.
+// TOUCHED: only texels above columns with moving geometry in this frame or the last.
 #pragma lumivox axis TOUCHED 0 1
 layout(local_size_x = 8, local_size_y = 8) in;
 

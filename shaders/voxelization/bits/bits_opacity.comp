@@ -1,8 +1,8 @@
 #version 450
-// Bits as opacities.
+// Writes bits as opacities 0 and 1.
 #include "bits.glsl"
 
-layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are what memory holds together
+layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are contiguous in memory
 
 layout(binding = 2, r8) uniform writeonly image3D opacity;
 

@@ -1,6 +1,6 @@
 #version 450
-// What stands still alone, in the columns in which something moved the frame before; they are told by 2, and no column has anything that
-// moves now (1).
+// Resets the columns that had moving geometry in the last frame to static geometry. Their mark in `touched` changes from 1 to 2; all other
+// marks become 0.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0, r32ui) uniform readonly uimage3D still;

@@ -1,7 +1,7 @@
 #version 450
 // Stacks of 128 voxels in the four words of a texel (Thiedemann et al. 2011; thesis 004 Sec. 3.2.1).
 // Deviates: bit 0 of the first component is the nearest voxel, where the thesis counts from the highest bit.
-// TOUCHED: only of columns in which something moves or moved; the others are as they were.
+// TOUCHED: only columns with moving geometry in this frame or the last; the others are unchanged.
 #pragma lumivox axis TOUCHED 0 1
 #include "bits.glsl"
 

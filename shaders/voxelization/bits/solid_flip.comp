@@ -1,10 +1,10 @@
 #version 450
-// Parity fill: each triangle of a closed surface flips every voxel of a column that lies behind it, so that those inside are flipped an odd
-// number of times. Here it flips the first of them alone; solid_fill.comp carries that on to the end of the column.
-// Deviates from drawing the triangles: whether a column's centre line meets a triangle is the number of its edges, odd or even, that a ray
-// in the projection crosses, and an edge gives the same answer for each of its triangles whatever the rounding. So every line meets a
-// closed surface an even number of times and no column leaks, which the coverage rules of a rasteriser promise only until it clips.
-// A triangle over many columns is put aside and shared out over many threads (MANY 1).
+// Parity fill: each triangle of a closed surface flips every voxel of a column behind it, so that the voxels inside are flipped an odd
+// number of times. This pass flips only the first of these voxels; solid_fill.comp carries the parity to the end of the column.
+// Deviates from rasterising the triangles: a column's centre line meets a triangle if a ray in the projection crosses an odd number of its
+// edges. An edge gives the same answer for both of its triangles, whatever the rounding, so every line meets a closed surface an even
+// number of times and no column leaks. The coverage rules of rasterisation guarantee this only without clipping. A triangle over many
+// columns is put aside and spread over many threads (MANY 1).
 #pragma lumivox axis MANY 0 1
 #define SCENE_GEOMETRY
 #include "common/scene.glsl"
@@ -26,7 +26,7 @@ const int kColumnsPerThread = 64;
 
 struct Projected {
   vec3 corners[3];
-  ivec2 low, size;  // columns whose centres may be met
+  ivec2 low, size;  // columns whose centre lines may meet the triangle
 };
 
 Projected project(int triangle) {
@@ -34,13 +34,13 @@ Projected project(int triangle) {
   for (int k = 0; k < 3; ++k) p.corners[k] = cornerInGrid(triangle, k);
   vec2 low = min(p.corners[0].xy, min(p.corners[1].xy, p.corners[2].xy));
   vec2 high = max(p.corners[0].xy, max(p.corners[1].xy, p.corners[2].xy));
-  // Clamped as floats: a triangle may lie farther away than integers reach.
+  // Clamped as floats: coordinates far outside the grid overflow an integer.
   p.low = ivec2(clamp(floor(low), vec2(0.0), vec2(resolution.xy)));
   p.size = max(ivec2(clamp(ceil(high), vec2(0.0), vec2(resolution.xy))) - p.low, 0);
   return p;
 }
 
-// Whether the ray from `point` towards growing x crosses the edge. The ends are put into one order first.
+// Whether the ray from `point` along +x crosses the edge. The ends are sorted first, so that both triangles of the edge agree.
 bool crosses(vec2 a, vec2 b, vec2 point) {
   if ((a.y <= point.y) == (b.y <= point.y)) return false;
   if (b.y < a.y) {
@@ -62,7 +62,7 @@ void flip(Projected p, ivec2 column) {
   float low = min(a.z, min(b.z, c.z)), high = max(a.z, max(b.z, c.z));
   float depth = normal.z != 0.0 ? a.z - dot(normal.xy, centre - a.xy) / normal.z : 0.5 * (low + high);
   depth = clamp(depth, low, high);
-  // The first voxel whose centre lies behind. What lies before the grid flips whole columns, what lies behind it none.
+  // The first voxel whose centre lies behind the triangle: 0 for a triangle before the grid; none for a triangle behind the grid.
   int first = int(clamp(floor(depth + 0.5), 0.0, float(resolution.z)));
   if (first < resolution.z) imageAtomicXor(parity, ivec3(column, first >> 5), 1u << (first & 31));
 }
