@@ -42,7 +42,7 @@ void requireSameGrid(const char* input, const GridPlacement& grid, const char* o
 class Neighbours {
  public:
   explicit Neighbours(Pass* pass);
-  /// "six voxels, filtered, shifted by 0.5 voxels"
+  /// "'voxels six', 'filter on' and 'shift 0.5'"
   std::string inWords() const;
   gpu::ResourceBinding binding() const;
   /// Whether only free neighbours count, where there are any.

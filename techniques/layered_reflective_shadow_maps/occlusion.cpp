@@ -13,7 +13,7 @@ namespace occlusion = shaders::layered_reflective_shadow_maps::occlusion;
 /// The size of a grid with voxels added at its high ends, so that halving leaves no odd number above the few
 /// voxels of the coarsest levels. Voxels that share children would make walls thicker from level to level.
 glm::ivec3 evenlyHalved(const glm::ivec3& size) {
-  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
+  constexpr int kCoarse = 4;  // sizes may be odd below twice this, along the longest side
   int multiple = 1;
   while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
   return (size + (multiple - 1)) / multiple * multiple;

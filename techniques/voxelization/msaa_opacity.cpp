@@ -45,9 +45,9 @@ class MsaaOpacityPass : public Voxelizer {
   VoxelFragments::Coverage coverage() const override { return VoxelFragments::Coverage::sum; }
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    // Viewports of different sizes; each triangle is drawn in one of them. Deviates from thesis 004 Sec.
-    // 3.5.2, where a geometry stage chooses the viewport: here the vertex stage of each viewport drops the
-    // triangles of the others.
+    // Viewports of different sizes; each triangle is drawn in one of them. Deviates from thesis Gomes 2015,
+    // Sec. 3.5.2, where a geometry stage chooses the viewport: here the vertex stage of each viewport drops
+    // the triangles of the others.
     int mostScale = 1;
     while (2 * mostScale <= supersampling) mostScale *= 2;
     for (int scale = 1; scale <= mostScale; scale *= 2)

@@ -48,7 +48,7 @@ struct Origins {
   std::string withoutTexcoords;
 };
 
-/// Error with the bytes where there is no room for so many elements (Settings::elements).
+/// Error with the bytes where there is no room for so many elements (OriginSettings::elements).
 Origins findOrigins(const Scene& scene, const OriginSettings& settings);
 
 }  // namespace lumivox::implicit_visibility

@@ -57,7 +57,7 @@ class NearPlaces {
   };
 
   glm::ivec3 cellOf(const glm::vec3& place) const {
-    // Beyond this a float resolves only every thousandth cell.
+    // Beyond this a float resolves only every 128th cell.
     constexpr float kMost = 0x1p30f;
     return glm::ivec3(glm::clamp(glm::floor(place * inverse_), -kMost, kMost));
   }

@@ -8,7 +8,7 @@
 namespace lumivox::voxel_cone_tracing {
 
 glm::ivec3 evenlyHalved(const glm::ivec3& size) {
-  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
+  constexpr int kCoarse = 4;  // sizes may be odd below twice this, along the longest side
   int multiple = 1;
   while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
   return (size + (multiple - 1)) / multiple * multiple;
