@@ -249,7 +249,7 @@ class JudgedImages {
     return left == left_.end() || !(rmse > 0.0) ? 0.0 : 0.5 * left->second * left->second / (rmse * rmse);
   }
 
-  /// Renders a frame of each of two seeds and compares them bit by bit.
+  /// Whether two seeds give images that differ in any value, at one position in the pixel.
   bool differ(std::uint64_t one, std::uint64_t other) {
     const SceneSnapshot centre = snapshotAt(context_, options_, context_.options.time);
     std::vector<Judged> images;

@@ -27,8 +27,9 @@ class SceneReference {
   void require(int bounces);
   /// Null where the reference has no such layer.
   const ReferenceLayer* layer(const std::string& name);
-  /// The reference `frame` frames of an animation later, for flicker. It has a quarter of the samples,
-  /// different ones in every frame, so that its noise is independent. Frame 0 is this one.
+  /// The reference `frame` frames of an animation later, for flicker. It has a quarter of the samples (at
+  /// least 16 per pixel, if this one has as many), different ones in every frame, so that its noise is
+  /// independent. Frame 0 is this one.
   SceneReference& later(int frame);
   /// The error of an empty image against this layer: black, or 1 for ambient occlusion.
   const ImageError& errorOfNothing(const std::string& name);

@@ -480,7 +480,7 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
     logDetails("{}: {:.2f} s, {:.1f} times its frame of {:.3f} s{}", runText(entry.run), sum,
                1000.0 * sum / entry.run.point.frameMs.median, entry.run.point.frameMs.median / 1000.0, parts);
   }
-  // All points of a batch have the same number of frames.
+  // The batch's time is shared by frame time, as if all points had equally many frames.
   double frames = 0.0;
   for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;
   const double all = secondsSince(start);

@@ -86,7 +86,8 @@ class SceneReport {
   std::size_t missing() const { return count(State::missing); }
   std::size_t takenUp() const { return count(State::takenUp); }
 
-  /// Expected time, s, of the cheapest missing point among those that were looked at; empty without any.
+  /// Upper estimate of the time, s, of the cheapest missing point among those that were looked at; empty
+  /// without any.
   std::optional<double> leastMissingSeconds() {
     std::optional<double> least;
     for (const Point& point : points_)

@@ -158,7 +158,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }
-  // The first point is timed again at the end, to learn how far repeated times differ on this machine.
+  // The first points are timed again at the end, to learn how far repeated times differ on this machine.
   if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));

@@ -20,7 +20,8 @@ struct Turn {
   std::string failure = {};                    ///< why it could not be timed, even alone; empty when it was
 };
 
-/// Times, in turns, `repeats` frames of each point in which every kept pass runs; then `nextFrames` frames
+/// Times, in turns, at most `repeats` frames of each point in which every kept pass runs (fewer once
+/// TimedPoint::isSettled()); then `nextFrames` frames
 /// 1/60 s apart; then as many, at most kLeastRepeats, while nothing moves, and while camera and lights move.
 /// As many points are held at once as fit into memory. A point that fails beside others is retried after
 /// them, in the end alone, so that a failure is its own. All points share the scene and the transient memory.

@@ -19,7 +19,7 @@ Measured rootOf(double square, double uncertainty) {
   return {std::sqrt(least), std::sqrt(least + uncertainty) - std::sqrt(least)};
 }
 
-/// The number of radiance channels of a pixel.
+/// Distance between pixels in the values of an image, with an alpha channel.
 std::size_t stride(const ImageBuffer& image) {
   return static_cast<std::size_t>(image.channels());
 }

@@ -51,7 +51,7 @@ std::vector<std::string> lines(const std::string& text, int width) {
   return result;
 }
 
-/// The display value of a paper without anything on it.
+/// Fills a rectangle, clipped to the sheet, with a display value.
 void fill(ImageBuffer& sheet, int left, int top, int width, int height, float value) {
   for (int y = std::max(0, top); y < std::min(sheet.height(), top + height); ++y)
     for (int x = std::max(0, left); x < std::min(sheet.width(), left + width); ++x)

@@ -12,7 +12,7 @@ namespace {
 
 using namespace page;
 
-/// Axes of the drawing of one curve, pixels.
+/// Size and margins of the drawing of one curve, pixels.
 constexpr double kWidth = 420, kHeight = 320, kLeft = 64, kRight = 16, kTop = 44, kBottom = 48;
 
 std::string csvText(const std::string& text) {

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 /// The metrics that the page compares pipelines by.
 constexpr const char* kMetrics[] = {kDefaultMetric, "rmse", "relative_mse", "percentile95"};
 
-/// The share of a time saved by leaving out or standing still, where it exceeds the spread of the repeats.
+/// The time, ms, saved by leaving out passes or standing still, and whether the repeats suffice to claim it.
 Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   const Measured before = medianOf(unpruned), after = medianOf(pruned);
   if (before.value <= 0.0 || unpruned.repeats == 0)

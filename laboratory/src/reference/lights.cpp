@@ -137,7 +137,7 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const glm::vec3&
       triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
   const glm::vec3 path = end - position;
   const float squaredDistance = glm::dot(path, path);
-  // Density per area at distance 1, seen along the normal. It is 0 where the point lies on the light itself.
+  // Density per solid angle of a light seen head on. It is 0 where the point lies on the light itself.
   const float headOn = triangle.emitterDensity * squaredDistance;
   if (!(headOn > 1e-18f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;

@@ -190,8 +190,9 @@ struct Slab {
                                            extinction, albedo, anisotropy));
   }
 
-  /// Radiance along a ray from above the slab. At depth s of a path of length D = 1 / m the light has come
-  /// through s k, or from below through (D - s) k, k = m / (its own cosine with z):
+  /// Radiance along a ray from above the slab, with m its cosine with z, D = 1 / m its length in the slab,
+  /// and k = m / (the light's cosine with z). At distance s light from above has passed through s k, light
+  /// from below through (D - s) k. With T the environment seen through D:
   ///   T + a p E sigma int_0^D exp(-sigma (s + s k)) ds, or with exp(-sigma (s + (D - s) k)).
   double radiance(const glm::dvec3& direction) const {
     const glm::dvec3 view = glm::normalize(direction), travel = glm::normalize(light);

@@ -10,7 +10,7 @@
 
 namespace lumivox::stress {
 
-/// Error without a program to start, or without an answer within a minute.
+/// Throws without a program to start, or without an answer within a minute.
 std::uint64_t askForContent(const Ground& ground, const ContentRequest& request,
                             const std::vector<std::string>& environment);
 

@@ -14,8 +14,8 @@ bool makesIndirect(const Frame& frame);
 /// Sum of the outputs that hold indirect light; empty when there is none.
 ImageBuffer indirectOf(const Frame& frame);
 
-/// Voxels that are set but not touched or touched but not set, over those that are touched; 0 where both sets
-/// are empty.
+/// Voxels that are set but not touched or touched but not set, over those that are touched; without touched
+/// voxels, the number of set ones.
 double wrongShare(const VoxelError& error);
 
 /// Compares the image of `changed` with that of `scene`, which must be the same: RMS difference over the
@@ -30,8 +30,8 @@ std::string ownLayer(const FrameResult& frame, const std::string& output);
 /// The reference of the sum of the pipeline's outputs, with as many bounces as they model.
 ReferenceLayer referenceOf(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot);
 
-/// Sum of the references of the outputs that hold indirect light, each with its own bounces, and its mean.
-/// `samples` 0: the battery's number.
+/// Sum of the references of the outputs that hold indirect light, each with its own bounces. `samples` 0: the
+/// battery's number. indirectReference() is the mean of that sum.
 ReferenceLayer indirectLayer(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot = {},
                              int samples = 0);
 double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot = {});

@@ -20,8 +20,8 @@ glm::dmat3 turnAboutY(double angle);
 
 /// A scene with everything in it moved, so that its image stays the same: objects by their placements,
 /// motions, lights, cameras and media. Radiances and irradiances stay; intensities scale with the square,
-/// extinctions with the inverse of the scale. Error for a medium in a box or a volume under any rotation but
-/// quarter turns, and for particles that no longer rise along Y.
+/// extinctions with the inverse of the scale. Error for a medium in a box under any rotation but quarter
+/// turns, for a volume under any rotation, and for particles that no longer rise along Y.
 Scene moved(const Scene& scene, const Similarity& by);
 
 /// Multiplies all lights, emission of surfaces and the environment by a factor.

@@ -24,7 +24,7 @@ struct ReportOptions {
   std::vector<std::string> settings;  ///< "name=value"; pins that axis of a sweep
   std::filesystem::path output = "out/report/index.html";  ///< the page
   int referenceSamples = 0;   ///< per pixel; 0: referenceSamplesFor(width, height)
-  int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 160 on a software rasteriser
+  int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 128 on a software rasteriser
   std::string camera;
   double time = 0.0;               ///< s
   std::uint64_t seed = 1;          ///< the first one
