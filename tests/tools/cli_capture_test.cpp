@@ -160,3 +160,31 @@ TEST_CASE("the committed captures are what the command makes of their scene") {
   }
   CHECK(std::sqrt(squares / all) < 0.01);
 }
+
+TEST_CASE(
+    "a report of captured light without a scene that stands for it has times, no errors, and says why") {
+  const bool stands = GENERATE(true, false);
+  CAPTURE(stands);
+  const WallPlace place;
+  const CommandResult made =
+      typed("-q capture", place / "wall.scene", "--spp 4 --exposure 1 -o", place / "shots");
+  REQUIRE(made.exitCode == 0);
+  std::string block = made.output;
+  const std::size_t at = block.find("stands_for");
+  REQUIRE(at != std::string::npos);
+  if (!stands) block.erase(at, block.find('\n', at) - at);
+  place.write("plate.obj",
+              "v -0.3 -0.3 0.5\nv 0.3 -0.3 0.5\nv 0.3 0.3 0.5\nv -0.3 0.3 0.5\nf 1 2 3\nf 1 3 4\n");
+  place.write("back.scene",
+              "scene \"back\" {\n  camera main { capture shots }\n" + block +
+                  "  material grey { diffuse 0.5 }\n  mesh plate { file \"plate.obj\"  material grey }\n}\n");
+  const CommandResult result = typed("report", place / "back.scene", "--pipeline",
+                                     sourceDirectory() / "scenes/pipelines/captured_frames.pipeline",
+                                     "--quick --no-sweep --spp 4 -o", place / "page.html");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  CHECK((result.errors.find("stands_for") == std::string::npos) == stands);
+  const std::string json = readFile(place / "page.json");
+  CHECK((json.find("\"rmse\"") != std::string::npos) == stands);
+  CHECK(json.find("frame_ms") != std::string::npos);
+}

@@ -25,7 +25,8 @@ class SceneReference {
   const LayeredImage& layers() const { return layers_; }
   /// Makes the layers of so many bounces where they are missing. Pointers from layer() become invalid.
   void require(int bounces);
-  /// Null where the reference has no such layer.
+  /// Null where the reference has no such layer, and in a scene lit by captures none of which stands for a
+  /// scene: the constructor warns that its truth is unknown.
   const ReferenceLayer* layer(const std::string& name);
   /// The reference `frame` frames of an animation later, for flicker. It has a quarter of the samples (at
   /// least 16 per pixel, if this one has as many), different ones in every frame, so that its noise is
@@ -44,6 +45,7 @@ class SceneReference {
   const Scene* scene_;
   ReferenceOptions options_;
   std::optional<double> exposure_;  ///< set once it is known
+  bool lacksTruth_ = false;
   std::map<int, std::unique_ptr<SceneReference>> later_;
   LayeredImage layers_;
   std::map<std::string, std::optional<ReferenceLayer>> cache_;

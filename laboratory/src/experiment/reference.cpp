@@ -7,6 +7,7 @@
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
 #include "lumivox/measure/exposure.h"
 #include "lumivox/reference/emission.h"
 
@@ -96,10 +97,24 @@ double viewExposure(const Scene& scene, const ReferenceOptions& view, const std:
 }  // namespace lumivox
 
 namespace lumivox::experiment {
+namespace {
+
+/// Whether pictures light the scene and no scene stands for what they show: its truth is unknown.
+bool lacksTruth(const Scene& scene) {
+  return !scene.captures.empty() && std::all_of(scene.captures.begin(), scene.captures.end(),
+                                                [](const auto& one) { return one->realScene == nullptr; });
+}
+
+}  // namespace
 
 SceneReference::SceneReference(const Scene& scene, const ReferenceOptions& options,
                                std::optional<double> given)
-    : scene_(&scene), options_(options), exposure_(given) {
+    : scene_(&scene), options_(options), exposure_(given), lacksTruth_(lacksTruth(scene)) {
+  if (lacksTruth_)
+    logWarning(
+        "scene '{}': no errors, since capture '{}' does not say what its pictures show; expected stands_for and a "
+        "scene of the real room",
+        scene.name, scene.captures.front()->name);
   const auto start = std::chrono::steady_clock::now();
   layers_ = cachedReference(scene, options);
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -128,6 +143,7 @@ SceneReference& SceneReference::later(int frame) {
 }
 
 const ReferenceLayer* SceneReference::layer(const std::string& name) {
+  if (lacksTruth_) return nullptr;
   auto found = cache_.find(name);
   if (found == cache_.end()) found = cache_.emplace(name, referenceLayer(layers_, name)).first;
   return found->second ? &*found->second : nullptr;
