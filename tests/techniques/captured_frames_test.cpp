@@ -227,6 +227,55 @@ TEST_CASE("the filter takes noise from depths, and keeps an edge of 10 cm at 2 m
   CHECK(depth < 0.02);  // beyond two pixels of the edge no depth is of the other side
 }
 
+TEST_CASE(
+    "a filtered depth is the mean of its neighbours by their distance and by the deviation of the sensor") {
+  const CaptureCamera camera = smallCamera(9, 9, 40.0);
+  const double z = GENERATE(0.8, 2.0, 4.0);
+  const bool isKinect = GENERATE(true, false);
+  CAPTURE(z, isKinect);
+  const double sigma = isKinect ? 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4) : 0.004 * z;
+  const auto off = [](const glm::ivec2& at) {
+    return at == glm::ivec2(4) ? 0.0 : 3.0 * std::sin(1.7 * at.x + 2.9 * at.y);
+  };
+  const auto seen = [&](const glm::dvec2& ray) {
+    return SeenPixel{z + sigma * off(glm::ivec2(glm::round(camera.project(ray)))), glm::vec3(1.0f)};
+  };
+  constexpr double kFilter = 1.5, kRange = 2.0;
+  const CapturedMap map =
+      lightsIn(sceneWith(captureOf(camera, {seen})), {{"filter", kFilter},
+                                                      {"range", kRange},
+                                                      {"noise", isKinect ? "kinect" : "share"},
+                                                      {"noise_share", 0.004}});
+  // Within two deviations of the filter in the image; sigma cancels in the weights over depth.
+  double sum = 0.0, weights = 0.0;
+  for (int y = 1; y <= 7; ++y)
+    for (int x = 1; x <= 7; ++x) {
+      const double squared = (x - 4) * (x - 4) + (y - 4) * (y - 4), difference = off({x, y});
+      const double weight =
+          std::exp(-0.5 * squared / (kFilter * kFilter) - 0.5 * difference * difference / (kRange * kRange));
+      sum += weight * difference;
+      weights += weight;
+    }
+  REQUIRE(map.at(4, 4).isSurface);
+  const double moved = -static_cast<double>(map.at(4, 4).position.z) - z;
+  CHECK(moved / sigma == Approx(sum / weights).margin(2e-3));
+}
+
+TEST_CASE("a colour is saturated from 'brightest' on in any of its channels") {
+  for (int channel = 0; channel < 3; ++channel) {
+    CAPTURE(channel);
+    const auto seen = [&](const glm::dvec2& ray) {
+      SeenPixel pixel{2.0, glm::vec3(0.25f)};
+      if (ray.x < 0.0) pixel.radiance[channel] = 0.9f;
+      return pixel;
+    };
+    const CapturedMap map = lightsIn(sceneWith(captureOf(smallCamera(), {seen})),
+                                     {{"filter", 0}, {"saturated", "dropped"}, {"brightest", 0.5}});
+    CHECK(map.at(10, 20).flux == glm::vec3(0.0f));
+    CHECK(map.at(50, 20).flux.x > 0.0f);
+  }
+}
+
 TEST_CASE("noise of the sensor biases the light that arrives by less than 3 %") {
   std::mt19937 random(11);
   std::normal_distribution<double> noise;
@@ -336,8 +385,10 @@ TEST_CASE("behind content that is seen from elsewhere the picture is left out") 
 
 TEST_CASE("through a distorting lens the picture is resampled along the same rays") {
   // The radiance is a function of the ray, so that the composite shows it as a pinhole would.
+  CaptureCamera camera = distortedCamera();
+  if (GENERATE(false, true)) camera.distortion = {0.0, 0.0, 0.04, -0.05, 0.0};  // decentred alone
   const auto radiance = [](const glm::dvec2& ray) { return static_cast<float>(2.0 + ray.x - 0.5 * ray.y); };
-  const Scene scene = sceneWith(captureOf(distortedCamera(), {[&](const glm::dvec2& ray) {
+  const Scene scene = sceneWith(captureOf(camera, {[&](const glm::dvec2& ray) {
                                             return SeenPixel{2.0, glm::vec3(radiance(ray))};
                                           }}));
   const ImageBuffer image = LonePass("captured_frames.composite", scene)
