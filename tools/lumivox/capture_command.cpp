@@ -120,7 +120,7 @@ class Writer {
     text +=
         fmt::format("  focal {:.9g} {:.9g}  centre {:.9g} {:.9g}\n", focal_, focal_, centre_.x, centre_.y);
     if (!command_.exr) text += fmt::format("  exposure {:.6g}\n", exposure_);
-    text += fmt::format("  stands_for \"{}\"\n}}\n", command_.scene.filename().string());
+    text += fmt::format("  stands_for \"{}\"\n}}\n", command_.scene.generic_string());
     return text;
   }
 
