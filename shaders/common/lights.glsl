@@ -61,8 +61,8 @@ int cubeFace(vec3 direction) {
 }
 
 #ifdef SHADOW_VIEWS
-// Visible fraction in [0,1]. The point is moved along its normal by a texel of the shadow view, so that a surface does not shadow
-// itself (normal offset); geometricNormal faces the lit side.
+// Visible fraction in [0,1]. The point is moved along its normal by 0.5 to 2 texels of the shadow view, by the light's angle, so that a
+// surface does not shadow itself (normal offset); geometricNormal faces the lit side.
 float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
   int layer = light.firstView;
   if (layer < 0) return 1.0;

@@ -11,7 +11,7 @@ layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std140, binding = 1) uniform Part { int firstIndex; };
 #include "common/corners.glsl"
 
-// Corners, normals and texture coordinates of the triangle, permuted so that z is the dominant axis; in voxels.
+// The triangle: corners in voxels, permuted so that z is the dominant axis; normals in world space, not permuted; texture coordinates.
 layout(location = 0) flat out mat3 corners;
 layout(location = 3) flat out mat3 cornerNormals;
 layout(location = 6) flat out int dominantAxis;

@@ -1,5 +1,5 @@
-// Orthogonal projection of the geometry along an axis of the grid, one pixel per column of voxels, for slicing, depth peeling and
-// multisampled opacity. Positions are in voxels, permuted so that z is the view axis.
+// Orthogonal projection of the geometry along an axis of the grid, one pixel per column of voxels, for slicing and depth peeling.
+// Positions are in voxels, permuted so that z is the view axis.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/voxel.glsl"

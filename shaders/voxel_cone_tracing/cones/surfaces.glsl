@@ -4,7 +4,8 @@
 // closed sheet in one layer of voxels as opacities that rise to 1 and fall again over one voxel on either side. The sheet then transmits
 // exp(2 int_0^1 ln(1 - x) dx) = exp(-2) of the light. Second, all layers of a solid object that covers half of the cone hide the same half,
 // not half of the rest. So the opacity of the voxels counts as the covered share. Within one object the largest share counts; from object
-// to object the open shares multiply. Where the opacity falls the object ends: once it has fallen to a quarter, a new rise counts in full.
+// to object the open shares multiply. Below a quarter of its peak the object ends by degrees: the covered share is at most four times the
+// opacity, so that a rise from 0 counts in full.
 #include "store.glsl"
 
 struct Covering {

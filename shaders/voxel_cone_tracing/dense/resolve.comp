@@ -35,7 +35,7 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 brickCount;
   float unit;       // radiance of the value 1 of the grid, W/(sr m^2)
   ivec3 resolution;
-  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean
+  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean, with DIRECTIONS the largest
   vec3 gridLow;     // m
   float voxelSize;  // m
   int lightCount;

@@ -16,7 +16,7 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Leaves {
   float unit;       // radiance of the value 1 of the pool, W/(sr m^2)
-  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean
+  int coverageSum;  // opacity of a voxel: 1: the sum of its coverages, at most 1; 0: their mean, with DIRECTIONS the largest
 };
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of any float format
 
