@@ -1,24 +1,27 @@
 #version 450
-// Virtual content where it is nearer than what the depth camera saw, else its picture.
+// Virtual content where it is nearer than what the depth camera saw, else its picture. RELIT: the picture times the change of irradiance that
+// virtual content causes (Debevec 1998, differential rendering, as a ratio, since the albedo of real surfaces is not known).
 #pragma lumivox axis PICTURE 0 1
+#pragma lumivox axis RELIT 0 1
+#pragma lumivox require !RELIT || PICTURE
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "distortion.glsl"
+#if PICTURE
+#include "picture.glsl"
+#endif
+#if RELIT
+#include "change.glsl"
+#endif
 
-layout(std140, binding = 0) uniform Parameters {
-  float tanHalfFov;
-  int width, height;   // of the captured frame
-  vec2 shift;          // of the view's rays, pixels
-  vec2 focal, centre;  // of the depth camera, pixels
-  vec4 radial;
-  vec2 tangential;
-  vec3 eye;            // posWorld
-  vec3 forward;
-};
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D virtualRadiance;
 #if PICTURE
 layout(binding = 2) uniform sampler2DArray capturedColour;
 layout(binding = 3) uniform sampler2DArray capturedDepth;
+#endif
+#if RELIT
+layout(binding = 4) uniform sampler2D beforeRadiance;  // what white real surfaces reflect without virtual content
+layout(binding = 5) uniform sampler2D afterRadiance;   // with it
+layout(binding = 6) uniform sampler2D addedRadiance;   // of its own light
 #endif
 layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 
@@ -43,15 +46,20 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) return;
   vec3 radiance = texelFetch(virtualRadiance, pixel, 0).rgb;
 #if PICTURE
-  vec2 slope = (2.0 * (vec2(pixel) + 0.5 + shift) - vec2(size)) / float(size.y) * tanHalfFov;
-  vec2 place = focal * distortedRay(slope, radial, tangential) + centre;
-  ivec2 nearest = ivec2(floor(place + 0.5));
-  if (all(greaterThanEqual(nearest, ivec2(0))) && all(lessThan(nearest, ivec2(width, height)))) {
+  vec2 place = placeOf(slopeOf(pixel, size));
+  ivec2 nearest;
+  if (pixelAt(place, nearest)) {
     vec4 position = texelFetch(gPosition, pixel, 0);
     float captured = texelFetch(capturedDepth, ivec3(nearest, 0), 0).r;
     // In a hole nothing is known, so that virtual content stays in front.
     bool isHidden = position.w > 0.0 && captured > 0.0 && dot(position.xyz - eye, forward) > captured;
-    if (position.w == 0.0 || isHidden) radiance = colourAt(place);
+    if (position.w == 0.0 || isHidden) {
+      radiance = colourAt(place);
+#if RELIT
+      radiance *= changeOf(texelFetch(beforeRadiance, pixel, 0).rgb,
+                           texelFetch(afterRadiance, pixel, 0).rgb + texelFetch(addedRadiance, pixel, 0).rgb);
+#endif
+    }
   }
 #endif
   imageStore(radianceImage, pixel, vec4(radiance, 1.0));

@@ -6,5 +6,7 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.describe("Pictures of a depth camera light virtual content", "Lensing & Broll 2013, Sec. 5");
   addRead(registry);
   addLights(registry);
+  addSurfaces(registry);
+  addRelight(registry);
   addComposite(registry);
 }

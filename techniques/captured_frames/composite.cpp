@@ -1,7 +1,6 @@
-// Composites virtual content over the captured picture.
+// Composites virtual content over the captured picture, whose surfaces it shades and lights.
 
-#include "lumivox/toolkit/bindings.h"
-#include "passes.h"
+#include "picture.h"
 
 namespace lumivox::captured_frames {
 namespace {
@@ -14,6 +13,25 @@ class CompositePass : public Pass {
   In<CapturedFrames> frames{this, "frames", Presence::optional,
                             "the picture behind, by read; without it virtual content alone",
                             Needs::capturedFrame};
+  In<Image> before{
+      this,
+      "before",
+      Presence::optional,
+      "what `surfaces` reflect without virtual content; with it and `after` the picture is relit",
+      Needs::capturedFrame,
+      Contributes::final};
+  In<Image> after{this,
+                  "after",
+                  Presence::optional,
+                  "what `surfaces` reflect of the same light where virtual content casts shadows",
+                  Needs::capturedFrame,
+                  Contributes::final};
+  In<Image> added{this,
+                  "added",
+                  Presence::optional,
+                  "what `surfaces` reflect of the light that virtual content sends",
+                  Needs::capturedFrame,
+                  Contributes::indirectDiffuse};
   Out<Image> radiance{
       this, "radiance", Contributes::final, Needs::nothing,
       "virtual content where it is nearer than the captured depth, else the picture, W/(sr m^2)"};
@@ -23,51 +41,38 @@ class CompositePass : public Pass {
   void run(PassContext& frame) override {
     const Image result{frame.image("virtual content before the picture")};
     const CameraView& view = frame.snapshot().camera;
-    const bool isCaptured = frames && frames->count > 0,
-               shown = isCaptured && isSameEye(view, frames->states.front());
+    const bool isCaptured = frames && frames->count > 0, shown = isCaptured && isSameEye(*frames, view),
+               relit = shown && before && after;
     if (isCaptured && !shown)
       frame.warn(
           "the camera does not stand where the depth camera stood, so that its picture is left out; expected a "
           "camera with 'capture NAME'");
-    code::composite::Parameters parameters{};
+    using gpu::Sampling;
+    shader::BindingSet bound{GBufferBinding(*gbuffer),
+                             code::composite::virtualRadiance(virtualRadiance->texture, Sampling::nearest),
+                             code::composite::radianceImage(result.texture)};
     if (shown) {
-      const CaptureCamera& camera = frames->camera;
-      const auto& k = camera.distortion;
-      const auto number = [](double value) { return static_cast<float>(value); };
-      parameters = {.tanHalfFov = view.tanHalfFov,
-                    .width = camera.width,
-                    .height = camera.height,
-                    .shift = view.shift,
-                    .focal = glm::vec2(camera.focal),
-                    .centre = glm::vec2(camera.centre),
-                    .radial = {number(k[0]), number(k[1]), number(k[4]), 0.0f},
-                    .tangential = {number(k[2]), number(k[3])},
-                    .eye = view.eye,
-                    .forward = view.forward};
+      bound.add(code::composite::picture(pictureOf<code::composite::Picture>(*frames, view)));
+      bound.add(code::composite::capturedColour(frames->colour, Sampling::nearest));
+      bound.add(code::composite::capturedDepth(frames->depth, Sampling::nearest));
     }
-    frame.dispatch(frame.program(code::composite::Variant{.picture = shown}),
-                   {code::composite::parameters(parameters), GBufferBinding(*gbuffer),
-                    code::composite::virtualRadiance(virtualRadiance->texture, gpu::Sampling::nearest),
-                    code::composite::capturedColour(shown ? frames->colour : nullptr, gpu::Sampling::nearest),
-                    code::composite::capturedDepth(shown ? frames->depth : nullptr, gpu::Sampling::nearest),
-                    code::composite::radianceImage(result.texture)},
+    if (relit) {
+      bound.add(code::composite::beforeRadiance(before->texture, Sampling::nearest));
+      bound.add(code::composite::afterRadiance(after->texture, Sampling::nearest));
+      bound.add(
+          code::composite::addedRadiance(added ? added->texture : blackImage(frame), Sampling::nearest));
+    }
+    frame.dispatch(frame.program(code::composite::Variant{.picture = shown, .relit = relit}), bound,
                    pixels(frame));
     radiance = result;
-  }
-
-  /// The picture shows what lies behind virtual content only from the depth camera's place.
-  static bool isSameEye(const CameraView& view, const CaptureState& state) {
-    constexpr float kSame = 1e-4f;
-    const float turned =
-        glm::length(view.forward - state.toWorld[2]) + glm::length(view.right - state.toWorld[0]);
-    return glm::length(view.eye - state.eye) <= kSame && turned <= kSame;
   }
 };
 
 }  // namespace
 
 void addComposite(TechniqueRegistry& registry) {
-  registry.add<CompositePass>("composite", "Virtual content before the captured picture, by depth");
+  registry.add<CompositePass>(
+      "composite", "Virtual content before the captured picture, by depth, and its shadows and light on it");
 }
 
 }  // namespace lumivox::captured_frames

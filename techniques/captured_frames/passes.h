@@ -9,6 +9,8 @@ namespace lumivox::captured_frames {
 
 void addRead(TechniqueRegistry& registry);
 void addLights(TechniqueRegistry& registry);
+void addSurfaces(TechniqueRegistry& registry);
+void addRelight(TechniqueRegistry& registry);
 void addComposite(TechniqueRegistry& registry);
 
 }  // namespace lumivox::captured_frames

@@ -87,7 +87,7 @@ class ShadePass : public Pass {
     const shade::Variant variant{.lights = shadow.present(),
                                  .shadows = shadow.present() && shadows,
                                  .glossy = gbuffer->specular != nullptr,
-                                 .emission = frame.traits().emission,
+                                 .emission = gbuffer->emission != nullptr,
                                  .medium = bound.axis};
     const auto withoutExtent = static_cast<int>(frame.snapshot().lights.size());  // they come first
     const int lightCount = areaLights ? lights.count : std::min(lights.count, withoutExtent);

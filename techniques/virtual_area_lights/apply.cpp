@@ -53,6 +53,10 @@ class ApplyPass : public Pass {
     if (diffuse.wanted() && !isDiffuse) diffuse->texture->clear(glm::vec4(0, 0, 0, 1));
     if (glossy.wanted() && !isGlossy) glossy->texture->clear(glm::vec4(0, 0, 0, 1));
     if (!isDiffuse && !isGlossy) return;
+    if (points->stride > 0)
+      throw Error(
+          "virtual_area_lights.apply: 'points' lie at pixels; expected points spread over triangles, by "
+          "virtual_area_lights.points");
     SparseLight shown = *light;
     if (atVertices()) {
       checkVertices();

@@ -15,6 +15,7 @@ void addGather(TechniqueRegistry& registry);
 void addNormalise(TechniqueRegistry& registry);
 void addOcclude(TechniqueRegistry& registry);
 void addApply(TechniqueRegistry& registry);
+void addPixels(TechniqueRegistry& registry);
 void addBruteForce(TechniqueRegistry& registry);
 
 /// The camera's position, which is all that a glossy lobe reads of it.

@@ -13,5 +13,6 @@ LUMIVOX_TECHNIQUE(registry) {
   addNormalise(registry);
   addOcclude(registry);
   addApply(registry);
+  addPixels(registry);
   addBruteForce(registry);
 }

@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include "lumivox/base/file.h"
-#include "lumivox/reference/depth.h"
 #include "support/against_reference.h"
-#include "support/captures.h"
 #include "support/kept_table.h"
+#include "support/real_scenes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -31,48 +30,6 @@ Against errorOf(const Scene& scene, const Picture& picture, const Pipeline& text
   return against(truthOf(scene, picture),
                  pictured(scene, picture, text, settings).outputs.at("indirect_" + lobe), "indirect_" + lobe,
                  0.0f);
-}
-
-/// The scene with exact depths and radiance in place of the files of its capture.
-Scene withCleanFrames(const Scene& scene, int samples) {
-  const Capture& given = *scene.captures.at(0);
-  const Scene& real = *given.realScene;
-  std::vector<CapturedImage> images;
-  for (const CaptureFrame& frame : given.frames) {
-    Scene seen = real;
-    // The real scene from where the depth camera stood.
-    Camera camera;
-    camera.name = "eye";
-    camera.eye = frame.eye;
-    camera.target = frame.eye + frame.rotation * glm::dvec3(0, 0, 1);
-    camera.up = frame.rotation * glm::dvec3(0, -1, 0);
-    camera.fov = 2.0 * std::atan(0.5 * given.camera.height / given.camera.focal.y);
-    camera.width = given.camera.width, camera.height = given.camera.height;
-    seen.cameras = {camera};
-    ReferenceOptions options = quietly(samples);
-    options.useCache = false;
-    CapturedImage image;
-    image.width = camera.width, image.height = camera.height;
-    image.saturation = INFINITY;
-    image.colour = renderReference(seen, options).layers.at("full").values();
-    image.depth = seenDepths(seen, snapshotOf(seen, 0.0), 0.0).depth;
-    images.push_back(std::move(image));
-  }
-  class Clean : public CaptureSource {
-   public:
-    explicit Clean(std::vector<CapturedImage> all) : images_(std::move(all)) {}
-    CapturedImage read(std::size_t frame) const override { return images_.at(frame); }
-
-   private:
-    std::vector<CapturedImage> images_;
-  };
-  auto clean = std::make_shared<Capture>(given.name, given.camera, given.frames,
-                                         std::make_unique<Clean>(std::move(images)));
-  clean->realScene = given.realScene;
-  clean->hash = {2, static_cast<std::uint64_t>(samples)};
-  Scene result = scene;
-  result.captures = {clean};
-  return result;
 }
 
 }  // namespace
@@ -108,24 +65,12 @@ TEST_CASE("three pictures from three sides err less than one of them") {
 }
 
 TEST_CASE("a lamp that the scene knows by the real one's name stands once in the truth") {
-  const Scene scene = committed("mixed_reality"), real = *scene.captures.at(0)->realScene;
+  const Scene scene = committed("mixed_reality");
   ReferenceOptions options = quietly(64);
   options.width = 40, options.height = 30;
   const LayeredImage merged = renderReference(scene, options);
   // Far from virtual content the picture is that of the real room.
-  Scene alone = real;
-  alone.cameras = {[&] {
-    const CaptureFrame& frame = scene.captures.at(0)->frames.front();
-    Camera camera;
-    camera.name = "eye";
-    camera.eye = frame.eye;
-    camera.target = frame.eye + frame.rotation * glm::dvec3(0, 0, 1);
-    camera.up = frame.rotation * glm::dvec3(0, -1, 0);
-    camera.fov =
-        2.0 * std::atan(0.5 * scene.captures.at(0)->camera.height / scene.captures.at(0)->camera.focal.y);
-    camera.width = 40, camera.height = 30;
-    return camera;
-  }()};
+  const Scene alone = realSceneOf(*scene.captures.at(0));
   const ImageBuffer truth = renderReference(alone, options).layers.at("full"),
                     &full = merged.layers.at("full");
   double sum = 0.0, expected = 0.0;
@@ -166,6 +111,7 @@ TEST_CASE("errors of captured frames", "[.]") {
   rows(one, 0.0, "one picture", [&](const auto& row) {
     const Scene clean = withCleanFrames(one, 512);
     row("", one, captured(), none);
+    row(", one way", one, captured("one_way"), none);
     row(", exact", clean, captured(), {"brightest=1"});
     row(", exact, every pixel at every pixel", clean, captured("brute_force"), {"brightest=1"});
     row(", every pixel at every pixel", one, captured("brute_force"), none);

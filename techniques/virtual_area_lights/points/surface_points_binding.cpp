@@ -26,7 +26,7 @@ SurfacePointsBinding::SurfacePointsBinding(const SurfacePoints& points)
                  StorageSlot{"PointCells"}(points.cells), StorageSlot{"PointCandidates"}(points.candidates)} {
   const GridPlacement& grid = points.grid;
   add(shader::UniformSlot<PointGridBlock>{"PointGrid"}(
-      {grid.low, 1.0f / grid.voxelSize, grid.resolution, points.count, points.spacing, points.farthest}));
+      {grid.low, points.stride > 0 ? 0.0f : 1.0f / grid.voxelSize, grid.resolution, points.count, points.spacing, points.farthest}));
 }
 
 }  // namespace lumivox::virtual_area_lights

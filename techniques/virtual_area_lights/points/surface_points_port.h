@@ -21,6 +21,10 @@ struct SurfacePoints {
   int neighbours = 0;     ///< number of neighbours that the grid was made for: at most so many are found
   float spacing = 0.0f;   ///< m: side of the square that a point stands for, in the mean, at rest
   float farthest = 0.0f;  ///< m: how far away neighbours are sought; the nearest one may be farther
+  /// Of points at pixels (pixels.cpp): so many along x and y, one at every `stride` pixels; 0 for points spread
+  /// over triangles. Points at pixels have neither grid nor set.
+  glm::ivec2 pixels{0};
+  int stride = 0;
   std::shared_ptr<const SurfacePointSet> set;
   std::shared_ptr<const SurfacePointState> state;
 
