@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "lumivox/base/file.h"
@@ -92,7 +93,7 @@ TEST_CASE(
     options.parameters = text.settings({"pictures=2"});
     options.health = true;
     PipelineExecutor executor(device(), techniques(), scene, text, options);
-    for (const std::size_t frame : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
+    for (const std::size_t frame : std::set{std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
       CAPTURE(frame);
       const FrameResult result = executor.render(frames[frame].time);
       CAPTURE(result.healthFindings);
