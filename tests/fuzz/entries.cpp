@@ -18,7 +18,6 @@
 #include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
-#include "lumivox/scene/text.h"
 #include "lumivox/shader/pack.h"
 #include "scene/obj_model.h"
 #include "scene/volume_file.h"
@@ -227,12 +226,16 @@ void makePictures() {
   }
 }
 
-/// Loads a scene with a capture, and decodes its first and last frame.
+/// Loads a scene with a capture, and decodes its first and last frame. A check of the text takes what loading
+/// takes.
 void loadCaptureScene(const std::string& inside) {
+  const fs::path file = folder().write(
+      "capture.scene", "scene \"s\" { camera m { capture c }\n capture c {\n" + inside + "\n} }");
+  Scene scene;
+  const bool isLoaded = taken([&] { scene = loadScene(file); });
+  require(taken([&] { checkScene(file); }) == isLoaded, "a check takes what loading takes");
+  if (!isLoaded) return;
   taken([&] {
-    const Scene scene =
-        loadSceneText("scene \"s\" { camera m { capture c }\n capture c {\n" + inside + "\n} }",
-                      folder().path() / "capture.scene");
     require(scene.captures.size() == 1, "a scene with a capture has one");
     const Capture& capture = *scene.captures.front();
     require(!capture.frames.empty(), "a capture has frames");
