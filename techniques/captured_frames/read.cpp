@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lumivox/base/error.h"
@@ -98,9 +101,11 @@ class ReadPass : public Pass {
         static_cast<std::size_t>(capture.camera.width) * static_cast<std::size_t>(capture.camera.height);
     colours.reserve(4 * pixels * static_cast<std::size_t>(result.count));
     depths.reserve(pixels * static_cast<std::size_t>(result.count));
+    std::vector<DecodedFrame> decoded;
     for (int layer = 0; layer < result.count; ++layer) {
       const std::size_t at = newest - static_cast<std::size_t>(layer);
       const auto image = capture.image(at);
+      decoded.push_back({capture.hash, at, image});
       appendColours(*image, colours);
       depths.insert(depths.end(), image->depth.begin(), image->depth.end());
       const CaptureState state = captureStateOf(capture, at, frame.snapshot().origin);
@@ -115,8 +120,41 @@ class ReadPass : public Pass {
                            "captured depths");
     result.depth->uploadFloats(0, depths);
     result.poses = frame.uploaded(poses, "poses of captured frames");
+    if (last_) decoded.push_back(*last_);
+    compareExposures(frame, capture, decoded);
+    last_ = decoded.front();
     frames = result;
   }
+
+  struct DecodedFrame {
+    ContentHash capture;
+    std::size_t number = 0;
+    std::shared_ptr<const CapturedImage> image;
+  };
+
+  /// Warns once if neighbouring frames differ in exposure. No frame is decoded for that: with 'frames 1' the
+  /// neighbour is that of the run before.
+  void compareExposures(PassContext& frame, const Capture& capture,
+                        const std::vector<DecodedFrame>& decoded) {
+    constexpr double kMostBetween = 1.25;
+    for (std::size_t i = 1; i < decoded.size() && !isTold_; ++i) {
+      const DecodedFrame *later = &decoded[i - 1], *earlier = &decoded[i];
+      if (later->capture != earlier->capture) continue;
+      if (later->number < earlier->number) std::swap(later, earlier);
+      if (later->number != earlier->number + 1) continue;
+      const auto ratio = brightnessOver(capture.camera, {*later->image, capture.frames[later->number]},
+                                        {*earlier->image, capture.frames[earlier->number]});
+      if (!ratio || (*ratio <= kMostBetween && *ratio >= 1.0 / kMostBetween)) continue;
+      frame.warn(fmt::format(
+          "frame {} of capture '{}' is {:.2f} times as bright as the frame before, at surfaces that "
+          "both show; expected one exposure for all frames",
+          later->number, capture.name, *ratio));
+      isTold_ = true;
+    }
+  }
+
+  std::optional<DecodedFrame> last_;  // the newest frame of the last run
+  bool isTold_ = false;
 
   static gpu::TextureRef texture(PassContext& frame, const CaptureCamera& camera, gpu::TextureKind kind,
                                  gpu::Format format, int layers, const char* label) {

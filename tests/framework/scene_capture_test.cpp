@@ -1,9 +1,7 @@
 // Captures: the readers of their formats, poses, rays, and what is refused.
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -12,93 +10,11 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
 #include "lumivox/scene/scene.h"
-#include "lumivox/scene/text.h"
+#include "support/capture_files.h"
 #include "support/facts.h"
-#include "support/support.h"
 
 using namespace lumivox;
-using lumivox::test::Tells;
-using lumivox::test::TemporaryDirectory;
-
-namespace {
-
-/// 4 x 3 pixels, each depth and colour of its own.
-WordImage depthImage(std::uint16_t first = 5000) {
-  WordImage image{4, 3, {}};
-  for (std::uint16_t i = 0; i < 12; ++i) image.values.push_back(static_cast<std::uint16_t>(first + 100 * i));
-  return image;
-}
-ByteImage colourImage(int width = 4, int height = 3) {
-  ByteImage image{width, height, 3, {}};
-  for (int i = 0; i < 3 * width * height; ++i)
-    image.values.push_back(static_cast<unsigned char>(i * 7 % 256));
-  return image;
-}
-
-constexpr const char* kPinhole = "focal 4 4  centre 1.5 1";
-
-/// A scene text with one capture, beside the files of the folder "c".
-struct CaptureFiles {
-  TemporaryDirectory directory;
-
-  void image(const std::string& name, const WordImage& depth) const {
-    create(name);
-    writeGreyPng16(directory.path() / name, depth);
-  }
-  void image(const std::string& name, const ByteImage& colour) const {
-    create(name);
-    writeBytePng(directory.path() / name, colour);
-  }
-  void text(const std::string& name, const std::string& content) const { directory.write(name, content); }
-  void create(const std::string& name) const {
-    std::filesystem::create_directories((directory.path() / name).parent_path());
-  }
-
-  Scene load(const std::string& capture = std::string("folder \"c\" ") + kPinhole,
-             const std::string& camera = "capture c") const {
-    return loadSceneText(
-        fmt::format("scene \"s\" {{ capture c {{ {} }}\n camera main {{ {} }} }}", capture, camera),
-        directory.path() / "s.scene");
-  }
-  std::string refusal(const std::string& capture = std::string("folder \"c\" ") + kPinhole) const {
-    try {
-      load(capture);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing was refused";
-  }
-};
-
-/// Two frames in the TUM layout, 0.1 s apart.
-CaptureFiles tum(const std::string& associations, const std::string& poses) {
-  CaptureFiles files;
-  for (const char* name : {"1.0", "1.1"}) {
-    files.image(fmt::format("c/rgb/{}.png", name), colourImage());
-    files.image(fmt::format("c/depth/{}.png", name), depthImage());
-  }
-  files.text("c/associations.txt", associations);
-  files.text("c/groundtruth.txt", poses);
-  return files;
-}
-
-constexpr const char* kPairs = "1.0 rgb/1.0.png 1.0 depth/1.0.png\n1.1 rgb/1.1.png 1.1 depth/1.1.png\n";
-constexpr const char* kTwoPoses = "1.0 1 2 3 0 0 0 1\n1.1 2 2 3 0 0 0.7071067811865476 0.7071067811865476\n";
-
-const Capture& only(const Scene& scene) {
-  REQUIRE(scene.captures.size() == 1);
-  return *scene.captures.front();
-}
-
-std::string matrixText(const glm::dquat& rotation, const glm::dvec3& eye) {
-  const glm::dmat3 m = glm::mat3_cast(rotation);
-  std::string text;
-  for (int row = 0; row < 3; ++row)
-    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", m[0][row], m[1][row], m[2][row], eye[row]);
-  return text + "0 0 0 1\n";
-}
-
-}  // namespace
+using namespace lumivox::test;
 
 TEST_CASE("rays of a distorted camera arrive at the pixels that they were taken for") {
   CaptureCamera camera;
@@ -267,85 +183,11 @@ TEST_CASE("EXR images hold linear colour and Z in metres") {
 // ---- .sens
 // -------------------------------------------------------------------------------------------------
 
-namespace {
-
-template <class T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-void putMatrix(std::string& bytes, const glm::dmat4& matrix) {
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) put(bytes, static_cast<float>(matrix[column][row]));
-}
-glm::dmat4 intrinsics(double focal, double cx, double cy) {
-  glm::dmat4 matrix(1.0);
-  matrix[0][0] = matrix[1][1] = focal;
-  matrix[2][0] = cx, matrix[2][1] = cy;
-  return matrix;
-}
-
-struct Sens {
-  std::uint32_t version = 4;
-  std::int32_t colourKind = 1, depthKind = 1;
-  std::uint64_t claimed = 2;
-  glm::dmat4 colourPose{1.0};
-  std::vector<glm::dmat4> poses{glm::dmat4(1.0), glm::dmat4(1.0)};
-  WordImage depth = depthImage(1000);
-  std::string colour;  ///< bytes of a PNG of 8 x 6
-
-  std::string bytes() const {
-    std::string result;
-    put(result, version);
-    put(result, std::uint64_t{4});
-    result += "name";
-    putMatrix(result, intrinsics(8, 3.5, 2.5));
-    putMatrix(result, colourPose);
-    putMatrix(result, intrinsics(4, 1.5, 1));
-    putMatrix(result, glm::dmat4(1.0));
-    put(result, colourKind);
-    put(result, depthKind);
-    for (const std::uint32_t side : {8u, 6u, 4u, 3u}) put(result, side);
-    put(result, 1000.0f);
-    put(result, claimed);
-    std::vector<Bytef> packed(compressBound(24));
-    uLongf size = static_cast<uLongf>(packed.size());
-    compress(packed.data(), &size, reinterpret_cast<const Bytef*>(depth.values.data()), 24);
-    for (const glm::dmat4& pose : poses) {
-      putMatrix(result, pose);
-      put(result, std::uint64_t{11});
-      put(result, std::uint64_t{12});
-      put(result, std::uint64_t{colour.size()});
-      put(result, std::uint64_t{size});
-      result += colour;
-      result.append(reinterpret_cast<const char*>(packed.data()), size);
-    }
-    return result;
-  }
-};
-
-Sens sens() {
-  Sens made;
-  TemporaryDirectory directory;
-  writeBytePng(directory.path() / "c.png", colourImage(8, 6));
-  made.colour = readFile(directory.path() / "c.png");
-  return made;
-}
-
-CaptureFiles with(const std::string& bytes) {
-  CaptureFiles files;
-  files.text("room.sens", bytes);
-  return files;
-}
-
-constexpr const char* kSens = "file \"room.sens\" rate 10";
-
-}  // namespace
-
 TEST_CASE(
     "a .sens file gives each depth the colour where its point projects, and none where a nearer one does") {
   Sens made = sens();
   made.poses[1] = glm::dmat4(std::numeric_limits<double>::quiet_NaN());
-  const CaptureFiles files = with(made.bytes());
+  const CaptureFiles files = withSens(made.bytes());
   const Scene scene = files.load(kSens);
   const Capture& capture = only(scene);
   REQUIRE(capture.frames.size() == 1);  // the second was not tracked
@@ -359,7 +201,7 @@ TEST_CASE(
   // The colour camera far to the side: near points come before far ones, and most fall outside.
   made.colourPose[3] = {0.3, 0.0, 0.0, 1.0};
   made.depth.values = {1000, 1000, 1000, 1000, 1000, 1500, 3000, 1000, 1000, 1000, 1000, 1000};
-  const CaptureFiles others = with(made.bytes());
+  const CaptureFiles others = withSens(made.bytes());
   const Scene shifted = others.load(kSens);
   const auto seen = only(shifted).image(0);
   std::size_t unknown = 0;
@@ -369,7 +211,7 @@ TEST_CASE(
 
 TEST_CASE("a .sens file of another kind, or with more frames than it can hold, is refused") {
   Sens made = sens();
-  const auto refused = [&] { return with(made.bytes()).refusal(kSens); };
+  const auto refused = [&] { return withSens(made.bytes()).refusal(kSens); };
   made.claimed = std::uint64_t{1} << 60;
   CHECK_THAT(refused(), Tells("room.sens", "1152921504606846976"));
   made.claimed = 2;
@@ -382,13 +224,13 @@ TEST_CASE("a .sens file of another kind, or with more frames than it can hold, i
   made.colourKind = -1;
   CHECK_THAT(refused(), Tells("kind -1", "JPEG"));
   made.colourKind = 1;
-  CHECK_THAT(with(made.bytes().substr(0, 100)).refusal(kSens), Tells("room.sens", "100"));
-  CHECK_THAT(with(std::string()).refusal(kSens), Tells("room.sens"));
+  CHECK_THAT(withSens(made.bytes().substr(0, 100)).refusal(kSens), Tells("room.sens", "100"));
+  CHECK_THAT(withSens(std::string()).refusal(kSens), Tells("room.sens"));
 }
 
 TEST_CASE("the last frame of a .sens file that was cut off is left out") {
   const std::string whole = sens().bytes();
-  const Scene scene = with(whole.substr(0, whole.size() - 5)).load(kSens);
+  const Scene scene = withSens(whole.substr(0, whole.size() - 5)).load(kSens);
   CHECK(only(scene).frames.size() == 1);
 }
 

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -38,8 +40,10 @@ class Folder {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   }
-  fs::path write(const char* name, std::string_view content) const {
+  const fs::path& path() const { return path_; }
+  fs::path write(const std::string& name, std::string_view content) const {
     const fs::path file = path_ / name;
+    fs::create_directories(file.parent_path());
     std::FILE* stream = std::fopen(file.c_str(), "wb");
     if (stream == nullptr || std::fwrite(content.data(), 1, content.size(), stream) != content.size() ||
         std::fclose(stream) != 0)
@@ -188,10 +192,127 @@ void volumeFile(std::string_view input) {
   });
 }
 
+namespace {
+
+constexpr std::array kTexts{"tum/associations.txt",
+                            "tum/rgb.txt",
+                            "tum/depth.txt",
+                            "tum/groundtruth.txt",
+                            "frames/frame-000000.pose.txt",
+                            "frames/frame-000001.pose.txt",
+                            "redwood/trajectory.log",
+                            "exr/groundtruth.txt"};
+
+/// Two frames of 4 x 3 pixels in each layout.
+void makePictures() {
+  const WordImage depth{4, 3, {0, 900, 1000, 1100, 1000, 65535, 1000, 2000, 1, 1000, 1000, 1000}};
+  ByteImage colour{4, 3, 3, {}};
+  for (int i = 0; i < 36; ++i) colour.values.push_back(static_cast<unsigned char>(7 * i));
+  LayeredImage floats;
+  floats.layers[""] = ImageBuffer(4, 3, 3, 0.5f);
+  floats.layers["Z"] = ImageBuffer(4, 3, 1, 1.5f);
+  const fs::path& here = folder().path();
+  for (const char* name : {"tum/rgb", "tum/depth", "frames", "redwood/color", "redwood/depth", "exr"})
+    fs::create_directories(here / name);
+  for (const char number : {'0', '1'}) {
+    const std::string padded = std::string("00000") + number;
+    writeBytePng(here / "tum/rgb" / (padded + ".png"), colour);
+    writeGreyPng16(here / "tum/depth" / (padded + ".png"), depth);
+    writeBytePng(here / ("frames/frame-" + padded + ".color.png"), colour);
+    writeGreyPng16(here / ("frames/frame-" + padded + ".depth.png"), depth);
+    writeBytePng(here / "redwood/color" / (padded + ".png"), colour);
+    writeGreyPng16(here / "redwood/depth" / (padded + ".png"), depth);
+    writeExr(here / ("exr/room_" + padded + ".exr"), floats);
+  }
+}
+
+/// Loads a scene with a capture, and decodes its first and last frame. A check of the text takes what loading
+/// takes.
+void loadCaptureScene(const std::string& inside) {
+  const fs::path file = folder().write(
+      "capture.scene", "scene \"s\" { camera m { capture c }\n capture c {\n" + inside + "\n} }");
+  Scene scene;
+  const bool isLoaded = taken([&] { scene = loadScene(file); });
+  require(taken([&] { checkScene(file); }) == isLoaded, "a check takes what loading takes");
+  if (!isLoaded) return;
+  taken([&] {
+    require(scene.captures.size() == 1, "a scene with a capture has one");
+    const Capture& capture = *scene.captures.front();
+    require(!capture.frames.empty(), "a capture has frames");
+    require(capture.camera.width > 0 && capture.camera.height > 0, "pictures have pixels");
+    for (const CaptureFrame& frame : capture.frames) {
+      require(std::isfinite(frame.time), "times are finite");
+      require(std::abs(glm::length(frame.rotation) - 1.0) < 1e-6, "rotations have unit length");
+      require(std::isfinite(glm::dot(frame.eye, frame.eye)), "eyes are in finite places");
+    }
+    for (std::size_t i = 1; i < capture.frames.size(); ++i)
+      require(capture.frames[i - 1].time <= capture.frames[i].time, "frames are in the order of their times");
+    for (const double time : {-1.0, 0.0, 1e9}) {
+      const SceneSnapshot snapshot = snapshotOf(scene, time);
+      const glm::vec3 corner = snapshot.camera.direction(0.0f, 0.0f);
+      require(std::isfinite(glm::dot(corner, corner)), "views are finite");
+    }
+    for (const std::size_t frame : {std::size_t{0}, capture.frames.size() - 1}) {
+      taken([&] {
+        const auto image = capture.image(frame);
+        const std::size_t pixels =
+            static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height);
+        require(image->depth.size() == pixels && image->colour.size() == 3 * pixels,
+                "every pixel has a depth and a colour");
+        for (const float depth : image->depth)
+          require(std::isfinite(depth) && depth >= 0.0f, "depths are finite and not negative");
+      });
+    }
+  });
+}
+
+}  // namespace
+
+void captureTexts(std::string_view input) {
+  const LogCapture silent;
+  static const bool made = (makePictures(), true);
+  require(made, "pictures can be written");
+  constexpr std::string_view kFile = "%%FILE ";
+  for (const char* text : kTexts) fs::remove(folder().path() / text);
+  std::size_t next = input.find(kFile);
+  const std::string inside(input.substr(0, next));
+  while (next != std::string_view::npos) {
+    input.remove_prefix(next + kFile.size());
+    next = input.find(kFile);
+    const std::string_view part = input.substr(0, next);
+    const std::size_t lineEnd = std::min(part.find('\n'), part.size());
+    for (const char* text : kTexts)
+      if (part.substr(0, lineEnd) == text)
+        folder().write(text, part.substr(std::min(lineEnd + 1, part.size())));
+  }
+  loadCaptureScene(inside);
+}
+
+void sensFile(std::string_view input) {
+  const LogCapture silent;
+  folder().write("input.sens", input);
+  loadCaptureScene("file \"input.sens\"");
+}
+
+void depthPng(std::string_view input) {
+  const LogCapture silent;
+  taken([&] {
+    const WordImage image = decodeGreyPng16(std::string(input), "input.png");
+    require(image.width > 0 && image.height > 0, "an image has pixels");
+    require(
+        image.values.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+        "every pixel has its value");
+    const fs::path copy = folder().write("copy.png", "");
+    writeGreyPng16(copy, image);
+    require(decodeGreyPng16(readFile(copy), copy).values == image.values, "an image can be written again");
+  });
+}
+
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{"scene_text", sceneText}, {"pipeline_text", pipelineText},
-                                      {"obj_model", objModel},   {"shader_pack", shaderPack},
-                                      {"exr_image", exrImage},   {"volume_file", volumeFile}};
+  static const std::vector<Entry> all{
+      {"scene_text", sceneText},       {"pipeline_text", pipelineText}, {"obj_model", objModel},
+      {"shader_pack", shaderPack},     {"exr_image", exrImage},         {"volume_file", volumeFile},
+      {"capture_texts", captureTexts}, {"sens_file", sensFile},         {"depth_png", depthPng}};
   return all;
 }
 

@@ -25,6 +25,15 @@ void exrImage(std::string_view input);
 /// An OpenVDB file with one grid: the density of a medium.
 void volumeFile(std::string_view input);
 
+/// The texts of a capture, which load with pictures that lie there already. What precedes the first line
+/// "%%FILE name" is the inside of a block `capture`; each such line begins one of the files that kTexts of
+/// entries.cpp names, in the folders "tum", "frames", "redwood" and "exr".
+void captureTexts(std::string_view input);
+/// A .sens file: the frames of a depth camera in one file.
+void sensFile(std::string_view input);
+/// A depth image: a grey PNG of 16 bits.
+void depthPng(std::string_view input);
+
 struct Entry {
   const char* name;  ///< of its folder of seeds
   void (*run)(std::string_view input);

@@ -176,6 +176,10 @@ WordImage decodeGreyPng16(const std::string& file, const std::filesystem::path& 
                          channels, channels == 1 ? "" : "s"));
     const std::uint64_t count =
         static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    constexpr std::uint64_t kMostExpansion = 1032;  // of deflate, in its longest match
+    if (2 * count / kMostExpansion > bytes.size())
+      refuse(fmt::format("claims {} x {} pixels, more than {} bytes hold", image.width, image.height,
+                         bytes.size()));
     requireMemory(count * 6, fmt::format("an image of {} x {} pixels", image.width, image.height));
     const std::unique_ptr<stbi_us, decltype(&std::free)> pixels(
         stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &channels, 0), &std::free);

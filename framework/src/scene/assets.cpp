@@ -1,5 +1,7 @@
 #include "scene/assets.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -40,7 +42,7 @@ std::optional<fs::path> projectOf(const fs::path& sceneFile) {
 
 }  // namespace
 
-AssetSearch::AssetSearch(const fs::path& sceneFile, const SceneLoadOptions& options) {
+AssetSearch::AssetSearch(const fs::path& sceneFile, const SceneLoadOptions& options) : sceneFile_(sceneFile) {
   const auto add = [&](const fs::path& directory) {
     const fs::path normal = directory.lexically_normal();
     if (std::find(directories_.begin(), directories_.end(), normal) == directories_.end())
@@ -73,6 +75,21 @@ std::optional<fs::path> AssetSearch::findAny(const std::string& name) const {
     if (fs::exists(candidate, error)) return candidate;
   }
   return std::nullopt;
+}
+
+fs::path AssetSearch::found(const std::string& name, const std::string& what) const {
+  if (const auto path = find(name)) return *path;
+  refuse(name, what);
+}
+
+fs::path AssetSearch::foundAny(const std::string& name, const std::string& what) const {
+  if (const auto path = findAny(name)) return *path;
+  refuse(name, what);
+}
+
+void AssetSearch::refuse(const std::string& name, const std::string& what) const {
+  throw AbsentError(
+      fmt::format("{}: {} '{}' was not found; searched {}", sceneFile_.string(), what, name, soughtAt(name)));
 }
 
 std::string AssetSearch::soughtAt(const std::string& name) const {

@@ -20,6 +20,10 @@ class AssetSearch {
   std::optional<std::filesystem::path> find(const std::string& name) const;
   /// As find(), for folders too.
   std::optional<std::filesystem::path> findAny(const std::string& name) const;
+  /// As find(); an AbsentError says that `what` was not found, and where it was sought.
+  std::filesystem::path found(const std::string& name, const std::string& what) const;
+  /// As findAny(), with the error of found().
+  std::filesystem::path foundAny(const std::string& name, const std::string& what) const;
   /// Every place where `name` is searched, for messages.
   std::string soughtAt(const std::string& name) const;
   /// Whether `name` should be beside the text because its folder exists there: then its absence is an error
@@ -29,6 +33,8 @@ class AssetSearch {
   std::string nearestLocal(const std::string& name) const;
 
  private:
+  [[noreturn]] void refuse(const std::string& name, const std::string& what) const;
+  std::filesystem::path sceneFile_;
   std::vector<std::filesystem::path> directories_;  // the first is the scene's own
 };
 

@@ -11,6 +11,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
+#include "scene/limits.h"
 
 namespace lumivox {
 namespace {
@@ -47,6 +48,11 @@ std::array<float, 256> tableOf(bool linear, double exposure) {
     table[i] = static_cast<float>(exposure) * (linear ? encoded : srgbToLinear(encoded));
   }
   return table;
+}
+
+/// Where a colour is no radiance that products of two hold in single precision, none is known.
+float knownRadiance(float radiance) {
+  return std::abs(radiance) <= kMostLight ? radiance : std::numeric_limits<float>::quiet_NaN();
 }
 
 /// Samples the colour image at the depth's pixels. Precondition: both show the same field of view.
@@ -91,6 +97,7 @@ class ImagePairs : public CaptureSource {
     const WordImage depth = decodeGreyPng16(readFile(files.depth, kLargestImageFile), files.depth);
     const ByteImage colour = readByteImage(files.colour);
     CapturedImage image;
+    requireFrameSize(depth.width, depth.height, files.depth.string());
     image.width = depth.width;
     image.height = depth.height;
     image.depth.reserve(depth.values.size());
@@ -131,14 +138,15 @@ class FloatImages : public CaptureSource {
     CapturedImage image;
     image.width = colour->second.width();
     image.height = colour->second.height();
+    requireFrameSize(image.width, image.height, file.string());
     image.depth = depth->second.values();
     for (float& z : image.depth)
-      if (!std::isfinite(z) || z < 0.0f) z = 0.0f;
+      if (!(z >= 0.0f && z <= kFarthestCaptured)) z = 0.0f;
     const auto channels = static_cast<std::size_t>(colour->second.channels());
     image.colour.reserve(3 * image.depth.size());
     for (std::size_t i = 0; i < image.depth.size(); ++i)
       for (std::size_t c = 0; c < 3; ++c)
-        image.colour.push_back(exposure_ * colour->second.values()[i * channels + c]);
+        image.colour.push_back(knownRadiance(exposure_ * colour->second.values()[i * channels + c]));
     image.saturation = std::numeric_limits<float>::infinity();
     return image;
   }
@@ -148,6 +156,7 @@ class FloatImages : public CaptureSource {
   float exposure_;
 };
 
+/// Frames of a .sens file.
 class SensorRecords : public CaptureSource {
  public:
   SensorRecords(std::shared_ptr<const SensFile> file, std::vector<ListedFrame> frames,
@@ -249,6 +258,15 @@ Reader readerOf(const std::string& format, const fs::path& place) {
 }
 
 }  // namespace
+
+void requireFrameSize(std::int64_t width, std::int64_t height, const std::string& name) {
+  constexpr std::int64_t kMostAlongSide = 16384, kMostPixels = std::int64_t{1} << 25;
+  if (width < 1 || height < 1 || width > kMostAlongSide || height > kMostAlongSide ||
+      width * height > kMostPixels)
+    throw Error(
+        fmt::format("{}: a frame of {} x {} pixels; expected sides from 1 to {} and at most {} pixels", name,
+                    width, height, kMostAlongSide, kMostPixels));
+}
 
 std::shared_ptr<Capture> loadCapture(const CaptureText& text, const fs::path& place, Hasher& hasher) {
   const std::string format = text.file     ? "sens"

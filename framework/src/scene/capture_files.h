@@ -17,6 +17,8 @@
 
 namespace lumivox {
 
+inline constexpr double kFarthestCaptured = 1e9;  ///< m, as kFarthestPlace of texts
+
 struct CapturePose {
   glm::dquat rotation{1, 0, 0, 0};  ///< camera to the capture's world, unit length
   glm::dvec3 eye{0};                ///< m
@@ -77,6 +79,9 @@ class SensFile {
   double metres_ = 1e-3;  ///< of a unit of depth
   CaptureListing listing_;
 };
+
+/// Error if a frame has no pixels or too many. `name` says which frame of which file.
+void requireFrameSize(std::int64_t width, std::int64_t height, const std::string& name);
 
 /// Whether a file or a folder is there.
 bool isThere(const std::filesystem::path& path);

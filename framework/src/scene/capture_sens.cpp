@@ -1,6 +1,5 @@
 // ScanNet's .sens files, version 4. All numbers are little-endian, matrices are rows of floats.
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "lumivox/base/deflate.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
@@ -24,7 +24,6 @@ enum class DepthKind { raw = 0, zlib = 1, occi = 2 };
 constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kMatrixBytes = 16 * sizeof(float);
 constexpr std::uint64_t kRecordHeadBytes = kMatrixBytes + 4 * sizeof(std::uint64_t);
-constexpr int kLargestSide = 16384;
 
 /// Reads numbers from bytes in order.
 class Cursor {
@@ -67,12 +66,16 @@ CaptureCamera cameraOf(const glm::dmat4& intrinsic) {
 
 void takeSize(Cursor& cursor, CaptureCamera& camera, const char* what, const fs::path& file) {
   const auto width = cursor.take<std::uint32_t>(), height = cursor.take<std::uint32_t>();
-  if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide || !(camera.focal.x > 0.0) ||
-      !(camera.focal.y > 0.0))
+  requireFrameSize(width, height, fmt::format("{}, {} images", file.string(), what));
+  constexpr double kShortest = 1e-3, kFarthest = 1e6;  // pixels, as `focal` and `centre` of texts
+  const auto isLength = [](double focal) { return focal >= kShortest && focal <= kFarthest; };
+  if (!isLength(camera.focal.x) || !isLength(camera.focal.y) || !(std::abs(camera.centre.x) <= kFarthest) ||
+      !(std::abs(camera.centre.y) <= kFarthest))
     throw Error(fmt::format(
-        "{}: {} images of {} x {} pixels with focal lengths of {:g} and {:g}; expected sides from 1 "
-        "to {} and lengths above 0",
-        file.string(), what, width, height, camera.focal.x, camera.focal.y, kLargestSide));
+        "{}: {} images with focal lengths of {:g} and {:g} and the centre {:g} {:g}; expected lengths from "
+        "{:g} to {:g} pixels, and a centre within them",
+        file.string(), what, camera.focal.x, camera.focal.y, camera.centre.x, camera.centre.y, kShortest,
+        kFarthest));
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
 }
@@ -83,19 +86,20 @@ std::string frameName(const fs::path& file, const ListedFrame& frame) {
 
 std::vector<std::uint16_t> depthsOf(std::string_view bytes, DepthKind kind, std::size_t pixels,
                                     const std::string& name) {
-  std::vector<std::uint16_t> depths(pixels);
-  uLongf size = static_cast<uLongf>(pixels * sizeof(std::uint16_t));
+  const std::size_t size = pixels * sizeof(std::uint16_t);
+  std::string unpacked;
   if (kind == DepthKind::zlib) {
-    const uLongf expected = size;
-    if (uncompress(reinterpret_cast<Bytef*>(depths.data()), &size,
-                   reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size())) != Z_OK ||
-        size != expected)
-      throw Error(fmt::format("{}: its depths do not unpack to {} bytes", name, expected));
-  } else {
-    if (bytes.size() != size)
-      throw Error(fmt::format("{}: {} bytes of depths; expected {}", name, bytes.size(), size));
-    std::memcpy(depths.data(), bytes.data(), bytes.size());
+    try {
+      unpacked = Deflated{bytes, size, nullptr}.expanded();
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: its depths: {}", name, error.what()));
+    }
+    bytes = unpacked;
   }
+  if (bytes.size() != size)
+    throw Error(fmt::format("{}: {} bytes of depths; expected {}", name, bytes.size(), size));
+  std::vector<std::uint16_t> depths(pixels);
+  std::memcpy(depths.data(), bytes.data(), size);
   return depths;
 }
 
@@ -139,9 +143,10 @@ SensFile::SensFile(fs::path path) : path_(std::move(path)) {
   takeSize(cursor, colour_, "colour", path_);
   takeSize(cursor, depth_, "depth", path_);
   const auto shift = static_cast<double>(cursor.take<float>());
-  if (!(shift > 0.0) || !std::isfinite(shift))
-    throw Error(fmt::format("{}: a depth shift of {:g}; expected the units in a metre, above 0",
-                            path_.string(), shift));
+  constexpr double kFewest = 1e-3, kMost = 1e9;  // as `depth_scale` of texts
+  if (!(shift >= kFewest && shift <= kMost))
+    throw Error(fmt::format("{}: a depth shift of {:g}; expected the units in a metre, from {:g} to {:g}",
+                            path_.string(), shift, kFewest, kMost));
   metres_ = 1.0 / shift;
   const auto count = cursor.take<std::uint64_t>();
   if (count > (fileBytes_ - std::min(fileBytes_, cursor.at())) / kRecordHeadBytes)

@@ -77,12 +77,11 @@ glm::dmat4 matrixOf(const fs::path& file, const std::vector<TextLine>& lines, st
 }
 
 std::optional<CapturePose> poseOf(const glm::dquat& rotation, const glm::dvec3& eye) {
-  constexpr double kFarthest = 1e9;  // m, as kFarthestPlace of texts
   const double length = glm::length(rotation);
   const bool isFinite =
       std::isfinite(length) && std::isfinite(eye.x) && std::isfinite(eye.y) && std::isfinite(eye.z);
   if (!isFinite || length < 0.5 || length > 2.0 ||
-      std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) > kFarthest)
+      std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) > kFarthestCaptured)
     return std::nullopt;
   glm::dquat unit = rotation / length;
   if (unit.w < 0.0) unit = -unit;

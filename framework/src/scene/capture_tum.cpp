@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <tuple>
 
 #include "lumivox/base/error.h"
 #include "scene/capture_files.h"
@@ -27,8 +30,11 @@ struct TimedPose {
 };
 
 double timeOf(const fs::path& file, const TextLine& line, std::size_t word) {
+  constexpr double kLatest = 1e12;  // s: a double tells times apart there by a tenth of a millisecond
   const double time = numberOf(file, line, word);
-  if (!std::isfinite(time)) refuseLine(file, line, "the time is not finite", "seconds");
+  if (!(std::abs(time) <= kLatest))
+    refuseLine(file, line, fmt::format("a time of {:g} s", time),
+               fmt::format("seconds, at most {:g}", kLatest));
   return time;
 }
 
@@ -69,39 +75,50 @@ void addAssociated(const fs::path& file, const fs::path& folder, CaptureListing&
         fmt::format("{} lines of {} do not name a pair", missing, file.filename().string()));
 }
 
-/// Joins each depth image with the colour image nearest in time, nearest pairs first, each image once.
+/// Joins each depth image with the colour image nearest in time, nearest pairs first, each image once. The
+/// nearest two of the images left are always neighbours in the order of times.
 void addNearest(const fs::path& folder, CaptureListing& listing) {
-  const std::vector<TimedFile> depths = timedFiles(folder / "depth.txt");
-  std::vector<TimedFile> colours = timedFiles(folder / "rgb.txt");
-  std::stable_sort(colours.begin(), colours.end(),
-                   [](const TimedFile& a, const TimedFile& b) { return a.time < b.time; });
-  struct Candidate {
-    double apart;
-    std::size_t depth, colour;
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  struct Image {
+    TimedFile file;
+    bool isDepth, isTaken = false;
+    std::size_t before = kNone, after = kNone;  ///< neighbours among the images left
   };
-  std::vector<Candidate> candidates;
-  for (std::size_t d = 0; d < depths.size(); ++d) {
-    const auto first =
-        std::lower_bound(colours.begin(), colours.end(), depths[d].time - kMostBetweenImages,
-                         [](const TimedFile& colour, double time) { return colour.time < time; });
-    for (auto colour = first; colour != colours.end() && colour->time <= depths[d].time + kMostBetweenImages;
-         ++colour)
-      candidates.push_back(
-          {std::abs(colour->time - depths[d].time), d, static_cast<std::size_t>(colour - colours.begin())});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.apart < b.apart; });
-  std::vector<bool> depthTaken(depths.size()), colourTaken(colours.size());
-  for (const Candidate& candidate : candidates) {
-    if (depthTaken[candidate.depth] || colourTaken[candidate.colour]) continue;
-    depthTaken[candidate.depth] = colourTaken[candidate.colour] = true;
+  std::vector<Image> images;
+  for (const bool isDepth : {true, false})
+    for (TimedFile& file : timedFiles(folder / (isDepth ? "depth.txt" : "rgb.txt")))
+      images.push_back({std::move(file), isDepth});
+  const auto depthCount = static_cast<std::size_t>(
+      std::count_if(images.begin(), images.end(), [](const Image& one) { return one.isDepth; }));
+  std::stable_sort(images.begin(), images.end(),
+                   [](const Image& a, const Image& b) { return a.file.time < b.file.time; });
+  using Pair =
+      std::tuple<double, std::size_t, std::size_t>;  // seconds apart, the earlier and the later image
+  std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
+  const auto join = [&](std::size_t earlier, std::size_t later) {
+    if (earlier != kNone) images[earlier].after = later;
+    if (later != kNone) images[later].before = earlier;
+    if (earlier == kNone || later == kNone) return;
+    const double apart = images[later].file.time - images[earlier].file.time;
+    if (images[earlier].isDepth != images[later].isDepth && apart <= kMostBetweenImages)
+      pairs.emplace(apart, earlier, later);
+  };
+  for (std::size_t i = 1; i < images.size(); ++i) join(i - 1, i);
+  while (!pairs.empty()) {
+    const auto [apart, earlier, later] = pairs.top();
+    pairs.pop();
+    if (images[earlier].isTaken || images[later].isTaken) continue;
+    images[earlier].isTaken = images[later].isTaken = true;
+    join(images[earlier].before, images[later].after);
+    const Image &depth = images[images[earlier].isDepth ? earlier : later],
+                &colour = images[images[earlier].isDepth ? later : earlier];
     ListedFrame frame;
-    frame.time = depths[candidate.depth].time;
-    frame.depth = folder / depths[candidate.depth].name;
-    frame.colour = folder / colours[candidate.colour].name;
+    frame.time = depth.file.time;
+    frame.depth = folder / depth.file.name;
+    frame.colour = folder / colour.file.name;
     listing.frames.push_back(std::move(frame));
   }
-  if (const std::size_t left = depths.size() - listing.frames.size(); left > 0)
+  if (const std::size_t left = depthCount - listing.frames.size(); left > 0)
     listing.remarks.push_back(
         fmt::format("{} depth images have no colour image within {:g} ms", left, 1e3 * kMostBetweenImages));
 }

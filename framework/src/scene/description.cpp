@@ -10,6 +10,7 @@
 #include "lumivox/dsl/schema.h"
 #include "lumivox/scene/medium.h"
 #include "lumivox/scene/text.h"
+#include "scene/block_reader.h"
 
 namespace lumivox {
 namespace {
@@ -19,8 +20,6 @@ using dsl::BlockSpecification;
 using dsl::CheckedBlock;
 using dsl::Property;
 
-// Range of lengths that can be normalised, with room for squares.
-constexpr double kShortestDirection = 1e-9, kLongestDirection = 2e9;
 constexpr double kNearestTarget = 1e-9;     // m
 constexpr double kSmallestParticle = 1e-6;  // m; the volume of smaller ones underflows single precision
 
@@ -34,10 +33,10 @@ std::string nameList(const std::vector<std::string>& names) {
 }
 
 /// Reads a text that the grammar accepts, and checks conditions beyond the tables.
-class Reader {
+class Reader : private BlockReader {
  public:
   Reader(const dsl::Document& document, std::vector<Diagnostic>& findings)
-      : document_(document), findings_(findings), grammar_(sceneSpecifications().front()) {}
+      : BlockReader(document, findings), grammar_(sceneSpecifications().front()) {}
 
   SceneDescription run(const Block& scene) {
     result_.name = CheckedBlock(scene, grammar_).name();
@@ -98,15 +97,6 @@ class Reader {
 
   CheckedBlock checked(const Block& block) const { return {block, specificationOf(grammar_, block.word)}; }
 
-  void report(const SourcePlace& place, int length, std::string what, std::string expected,
-              std::string suggestion = {}) {
-    findings_.push_back(
-        document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
-  }
-  void report(const Property& property, std::string what, std::string expected) {
-    report(property.place, static_cast<int>(property.word.size()), std::move(what), std::move(expected));
-  }
-
   void collectNames(const Block& scene) {
     for (const dsl::Item& item : scene.items) {
       // A block written as a property has its own finding, but its name counts as known.
@@ -163,7 +153,8 @@ class Reader {
     if (block.word == "environment") result_.environment = vector(checkedBlock, "radiance", glm::dvec3(0));
     if (block.word == "medium") readMedium(checkedBlock);
     if (block.word == "animate") readAnimation(checkedBlock);
-    if (block.word == "capture") readCapture(checkedBlock);
+    if (block.word != "capture") return;
+    if (auto capture = describeCapture(*this, checkedBlock)) result_.captures.push_back(std::move(*capture));
   }
 
   /// Takes the well-written file names of a refused block, so that these files can still be checked.
@@ -194,36 +185,6 @@ class Reader {
       medium.file = fileIn("file", kVolumeFormats);
       result_.media.push_back(std::move(medium));
     }
-  }
-
-  static glm::dvec3 vector(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
-    const std::vector<double> values = block.numbers(word, {fallback.x, fallback.y, fallback.z});
-    return {values.at(0), values.at(1), values.at(2)};
-  }
-
-  static PlacedText placed(const Property& property) {
-    const dsl::Value& value = property.values.front();
-    return {value.text, value.place, value.length};
-  }
-  static std::optional<PlacedText> placed(const CheckedBlock& block, const char* word) {
-    const Property* property = block.find(word);
-    return property == nullptr ? std::nullopt : std::optional(placed(*property));
-  }
-
-  /// A direction of unit length; a finding if the vector is too short or too long to be normalised.
-  glm::dvec3 direction(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
-    const glm::dvec3 value = vector(block, word, fallback);
-    const double length = glm::length(value);
-    if (length >= kShortestDirection && length <= kLongestDirection) return value / length;
-    if (const Property* property = block.find(word)) {
-      report(*property,
-             length == 0.0
-                 ? fmt::format("'{}' has length zero", word)
-                 : fmt::format("'{}' has a length of {:.6g}, of which no direction is left", word, length),
-             fmt::format("a direction, with a length from {:.6g} to {:.6g}", kShortestDirection,
-                         kLongestDirection));
-    }
-    return {0, 1, 0};
   }
 
   void readCamera(const CheckedBlock& block) {
@@ -340,14 +301,6 @@ class Reader {
     if (names.known.contains(name)) return;
     report(at.place, at.length, fmt::format("unknown {} '{}'", what, name), nameList(names.inOrder),
            suggestionFor(findings_, name, names.inOrder));
-  }
-
-  /// Refuses a file of another format by its name, before anything is read.
-  void requireFormat(const PlacedText& file, const char* what, const std::vector<std::string>& formats) {
-    if (hasFormat(file.text, formats)) return;
-    report(file.place, file.length,
-           fmt::format("{} file '{}' has a format that cannot be read", what, file.text),
-           fmt::format("one of {}", fmt::join(formats, ", ")));
   }
 
   Selection selection(const CheckedBlock& block) {
@@ -534,91 +487,6 @@ class Reader {
     result_.animations.push_back(std::move(animation));
   }
 
-  void readCapture(const CheckedBlock& block) {
-    CaptureText text;
-    text.name = block.name();
-    text.place = block.block().place;
-    text.folder = placed(block, "folder");
-    text.file = placed(block, "file");
-    text.files = placed(block, "files");
-    const int sources = text.folder.has_value() + text.file.has_value() + text.files.has_value();
-    if (sources != 1) {
-      report(block.block().place, static_cast<int>(block.block().word.size()),
-             sources == 0 ? "the capture names no files" : "the capture names its files twice",
-             "one of folder \"FOLDER\", file \"NAME.sens\" and files \"NAME_####.exr\"");
-    }
-    if (text.file) requireFormat(*text.file, "capture", kSensorFormats);
-    if (text.files) {
-      requireFormat(*text.files, "capture", kFloatImageFormats);
-      if (text.files->text.find('#') == std::string::npos)
-        report(text.files->place, text.files->length, "the file name has no place for the frame number",
-               "a name such as \"room_####.exr\"");
-    }
-    readCaptureFormat(block, text);
-    readCaptureCamera(block, text);
-    text.linear = block.text("transfer", "srgb") == "linear";
-    text.exposure = block.number("exposure", 1.0);
-    if (block.has("range")) {
-      const std::vector<double> range = block.numbers("range", {});
-      text.range.emplace(static_cast<int>(range.at(0)), static_cast<int>(range.at(1)));
-    }
-    text.rate = block.number("rate", text.rate);
-    text.translation = vector(block, "translate", glm::dvec3(0));
-    if (block.has("rotate"))
-      text.rotation =
-          glm::angleAxis(block.numbers("rotate", {}).at(3), direction(block, "rotate", {0, 1, 0}));
-    text.standsFor = placed(block, "stands_for");
-    if (text.standsFor) requireFormat(*text.standsFor, "scene", kSceneFormats);
-    if (sources == 1) result_.captures.push_back(std::move(text));
-  }
-
-  void readCaptureFormat(const CheckedBlock& block, CaptureText& text) {
-    const Property* property = block.find("format");
-    if (property == nullptr) return;
-    text.format = block.text("format", "");
-    const bool isSens = text.format == "sens", isExr = text.format == "exr";
-    if (isSens != text.file.has_value() || isExr != text.files.has_value())
-      report(*property,
-             fmt::format("format '{}' beside '{}'", *text.format,
-                         text.folder ? "folder"
-                         : text.file ? "file"
-                                     : "files"),
-             isSens  ? "file \"NAME.sens\""
-             : isExr ? "files \"NAME_####.exr\""
-                     : "folder \"FOLDER\"");
-  }
-
-  void readCaptureCamera(const CheckedBlock& block, CaptureText& text) {
-    const auto pair = [&](const char* word) -> std::optional<glm::dvec2> {
-      if (!block.has(word)) return std::nullopt;
-      const std::vector<double> values = block.numbers(word, {});
-      return glm::dvec2(values.at(0), values.at(1));
-    };
-    text.focal = pair("focal");
-    text.centre = pair("centre");
-    constexpr double kShortestFocal = 1e-3;  // pixels
-    if (text.focal && (text.focal->x < kShortestFocal || std::abs(text.focal->y) < kShortestFocal))
-      report(*block.find("focal"), "the focal length is too short, or negative along x",
-             fmt::format("two lengths of at least {} pixels; along y it may be negative", kShortestFocal));
-    if (text.focal.has_value() != text.centre.has_value())
-      report(*block.find(text.focal ? "focal" : "centre"),
-             fmt::format("'{}' alone", text.focal ? "focal" : "centre"), "focal FX FY and centre CX CY");
-    if (block.has("depth_scale")) text.depthScale = block.number("depth_scale", 1.0);
-    const Property* property = block.find("distortion");
-    if (property == nullptr) return;
-    const bool numbers =
-        std::all_of(property->values.begin(), property->values.end(), [](const dsl::Value& value) {
-          return value.kind == dsl::ValueKind::number && !value.unit && std::abs(value.number) <= 1e3;
-        });
-    if (!numbers || property->values.size() != text.distortion.size()) {
-      report(*property, "the distortion is not five numbers", "k1 k2 p1 p2 k3, each from -1000 to 1000");
-      return;
-    }
-    for (std::size_t i = 0; i < text.distortion.size(); ++i) text.distortion[i] = property->values[i].number;
-  }
-
-  const dsl::Document& document_;
-  std::vector<Diagnostic>& findings_;
   const BlockSpecification& grammar_;
   SceneDescription result_;
   Names materialNames_, meshNames_, captureNames_;

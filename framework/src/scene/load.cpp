@@ -16,7 +16,7 @@
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"
 #include "scene/assets.h"
-#include "scene/capture_files.h"
+#include "scene/capture_load.h"
 #include "scene/description.h"
 #include "scene/obj_model.h"
 #include "scene/texture.h"
@@ -55,11 +55,6 @@ bool namesOneFile(const MeshText& mesh) {
          hasFormat(mesh.file.text, kModelFormats);
 }
 
-/// The file of poses beside EXR images of a capture.
-std::string posesBeside(const std::string& pattern) {
-  return (fs::path(pattern).parent_path() / "groundtruth.txt").string();
-}
-
 /// Loading for rendering ends at the first bad file; a check goes on to find all problems.
 enum class Purpose { rendering, checking };
 
@@ -90,18 +85,7 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
   for (const CaptureText& capture : description.captures) {
     if (capture.standsFor) require(*capture.standsFor, capture.standsFor->text, "scene", kSceneFormats);
     if (capture.file) require(*capture.file, capture.file->text, "capture", kSensorFormats);
-    // For a pattern of files, the poses beside them must exist.
-    if (capture.folder || capture.files) {
-      const PlacedText& place = capture.source();
-      const std::string name = capture.folder ? place.text : posesBeside(place.text);
-      if (purpose == Purpose::checking ? assets.findAny(name).has_value()
-                                       : !assets.isLocal(name) || assets.findAny(name))
-        continue;
-      findings.push_back(document.finding(
-          place.place, place.length,
-          fmt::format("{} '{}' does not exist", capture.folder ? "capture folder" : "file of poses", name),
-          "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
-    }
+    findMissingFrames(document, capture, assets, purpose == Purpose::checking, findings);
   }
   for (const MediumText& medium : description.media) {
     if (medium.file) require(*medium.file, medium.file->text, "volume", kVolumeFormats);
@@ -140,8 +124,9 @@ class Loader {
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
     for (const CaptureText& capture : description_.captures)
-      attempt(capture.source(), [&] { addCapture(capture); });
-    if (isWhole_) sizeCapturedViews();
+      attempt(capture.source(),
+              [&] { scene_.captures.push_back(loadPlacedCapture(capture, assets_, options_, hasher_)); });
+    if (isWhole_) sizeCapturedViews(scene_);
     if (isWhole_ && read_.size() == description_.meshes.size()) checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
     throwIfAny(std::move(findings_));
@@ -212,12 +197,6 @@ class Loader {
   }
   bool attempt(const PlacedText& file, const auto& work) { return attempt(std::optional(file), work); }
 
-  fs::path found(const std::string& name, const std::string& what) const {
-    if (const auto path = assets_.find(name)) return *path;
-    throw AbsentError(fmt::format("{}: {} '{}' was not found; searched {}", document_.file.string(), what,
-                                  name, assets_.soughtAt(name)));
-  }
-
   int useNumber(Use use) {
     const auto [entry, isNew] = useNumbers_.emplace(use.key(), static_cast<int>(uses_.size()));
     if (isNew) uses_.push_back(std::move(use));
@@ -234,37 +213,10 @@ class Loader {
   void addMedium(const MediumText& text) {
     Medium medium = text.medium;
     if (text.file) {
-      medium.volume = std::make_shared<const DensityVolume>(
-          readVolumeFile(found(text.file->text, "volume"), text.grid ? text.grid->text : "", hasher_));
+      medium.volume = std::make_shared<const DensityVolume>(readVolumeFile(
+          assets_.found(text.file->text, "volume"), text.grid ? text.grid->text : "", hasher_));
     }
     scene_.media.push_back(std::move(medium));
-  }
-
-  void addCapture(const CaptureText& text) {
-    const std::string& name = text.source().text;
-    const auto place = text.files ? assets_.findAny(posesBeside(name)) : assets_.findAny(name);
-    if (!place)
-      throw AbsentError(fmt::format("{}: the files of capture '{}' were not found; searched {}",
-                                    document_.file.string(), text.name,
-                                    assets_.soughtAt(text.files ? posesBeside(name) : name)));
-    const auto capture =
-        loadCapture(text, text.files ? place->parent_path() / fs::path(name).filename() : *place, hasher_);
-    if (text.standsFor) {
-      SceneLoadOptions real = options_;
-      real.mayHoldCaptures = false;
-      capture->realScene = std::make_shared<const Scene>(loadScene(
-          found(text.standsFor->text, "the scene that capture '" + text.name + "' stands for"), real));
-    }
-    scene_.captures.push_back(capture);
-  }
-
-  /// Gives cameras of captures without a resolution the size of the frames.
-  void sizeCapturedViews() {
-    for (Camera& camera : scene_.cameras) {
-      if (camera.capture < 0 || static_cast<std::size_t>(camera.capture) >= scene_.captures.size()) continue;
-      const CaptureCamera& captured = scene_.captures[static_cast<std::size_t>(camera.capture)]->camera;
-      if (camera.width == 0) camera.width = captured.width, camera.height = captured.height;
-    }
   }
 
   /// Refuses a medium that fills the scene if the scene has no bounds.
@@ -282,7 +234,7 @@ class Loader {
   void addMesh(const MeshText& mesh) {
     std::vector<fs::path> files;
     for (const std::string& name : fileNames(mesh))
-      files.push_back(found(name, "the model of mesh '" + mesh.name + "'"));
+      files.push_back(assets_.found(name, "the model of mesh '" + mesh.name + "'"));
     ModelOptions modelOptions;
     modelOptions.crease = mesh.crease;
     modelOptions.strict = options_.strict;
@@ -469,11 +421,12 @@ class Loader {
       if (use.text->texture) {
         const std::string& name = use.text->texture->text;
         material.diffuseTexture =
-            texture(found(name, "the image of material '" + use.name + "'"), name, false);
+            texture(assets_.found(name, "the image of material '" + use.name + "'"), name, false);
       }
       if (use.text->mask) {
         const std::string& name = use.text->mask->text;
-        material.maskTexture = texture(found(name, "the mask of material '" + use.name + "'"), name, true);
+        material.maskTexture =
+            texture(assets_.found(name, "the mask of material '" + use.name + "'"), name, true);
       }
     } else {
       const ModelMaterial& model = *use.model;
