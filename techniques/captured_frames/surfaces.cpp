@@ -11,7 +11,8 @@ namespace code = shaders::captured_frames;
 class SurfacesPass : public Pass {
   In<CapturedFrames> frames{this, "frames", "frames with depth, by read"};
   In<ReflectiveShadowMap> map{this, "map", "places and normals of their pixels, by lights"};
-  Out<GBuffer> gbuffer{this, "gbuffer", Contributes::nothing, Needs::capturedFrame,
+  /// Without virtual triangles nothing changes on them.
+  Out<GBuffer> gbuffer{this, "gbuffer", Contributes::nothing, Needs::capturedFrame | Needs::triangles,
                        "real surfaces of the newest frame, white: shaded, they show irradiance over pi"};
 
   Reads readsFrom() const override { return Reads::camera; }

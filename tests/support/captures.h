@@ -140,4 +140,14 @@ inline CapturedMap lightsIn(const Scene& scene, const Settings& settings = {}, c
   return map;
 }
 
+/// The real surfaces that the scene's camera sees, with depths as they are.
+inline GBuffer surfacesIn(const Scene& scene) {
+  const captured_frames::CapturedFrames frames = read(scene);
+  const CapturedMap map = lightsIn(scene, {{"filter", 0}});
+  return LonePass("captured_frames.surfaces", scene)
+      .in("frames", frames)
+      .in("map", map.value)
+      .out<GBuffer>("gbuffer");
+}
+
 }  // namespace lumivox::test
