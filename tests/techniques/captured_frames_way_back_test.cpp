@@ -131,6 +131,23 @@ TEST_CASE("a hole of the sensor takes the surface beside it, and a wide one none
   CHECK(at(50, 20).y == 0.0f);
 }
 
+TEST_CASE("across a hole a plane is continued by 5 % of the distance, and no farther") {
+  // A slanted wall, of which three columns are missing: in the middle one the nearest pixel is two away.
+  const CaptureCamera camera = smallCamera();
+  const double slant = GENERATE(0.5, 0.91);
+  const auto wall = plane(2.0, slant);
+  const auto seen = [&](const glm::dvec2& ray) {
+    const glm::ivec2 at(glm::round(camera.project(ray)));
+    return at.x >= 20 && at.x <= 22 ? SeenPixel{0.0, glm::vec3(1.0f)} : wall(ray);
+  };
+  const std::vector<float> position =
+      surfacesIn(sceneWith(captureOf(camera, {seen}))).position->downloadFloats(0);
+  const auto depthAt = [&](int x) { return -position[4u * static_cast<unsigned>(60 * 20 + x) + 2u]; };
+  // From column 19 to 21 the ray turns by 0.04: 3 % and 6 % of the distance on the walls.
+  const double continued = wall(camera.ray({21, 20})).depth, kept = wall(camera.ray({19, 20})).depth;
+  CHECK(depthAt(21) == Approx(slant < 0.6 ? continued : kept).epsilon(1e-3));
+}
+
 TEST_CASE("the picture is multiplied by irradiance with virtual content over that without, between 0 and 8") {
   const Scene scene = sceneWith(captureOf(smallCamera(), {plane(2.0, 0.0, glm::vec3(3.0f, 2.0f, 1.0f))}));
   const auto image = [&](const glm::vec4& value) { return Image{filled(pixels(60, 40), value)}; };
