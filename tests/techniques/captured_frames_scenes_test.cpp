@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "lumivox/base/file.h"
-#include "lumivox/reference/depth.h"
 #include "support/against_reference.h"
+#include "support/captured_scenes.h"
 #include "support/captures.h"
 #include "support/kept_table.h"
 
@@ -18,61 +18,12 @@ Pipeline captured(const std::string& name = "") {
   return pipeline(name.empty() ? "captured_frames" : "captured_frames/captured_frames_" + name);
 }
 
-/// All bounces: a photograph holds them.
-LayeredImage truthOf(const Scene& scene, const Picture& picture) {
-  ReferenceOptions options = quietly(picture.referenceSamples);
-  options.width = picture.width, options.height = picture.height;
-  return renderReference(scene, options);
-}
-
 /// Indirect light of virtual surfaces over leaving the captured light out; real pixels are black in both.
 Against errorOf(const Scene& scene, const Picture& picture, const Pipeline& text,
                 const std::vector<std::string>& settings = {}, const std::string& lobe = "diffuse") {
   return against(truthOf(scene, picture),
                  pictured(scene, picture, text, settings).outputs.at("indirect_" + lobe), "indirect_" + lobe,
                  0.0f);
-}
-
-/// The scene with exact depths and radiance in place of the files of its capture.
-Scene withCleanFrames(const Scene& scene, int samples) {
-  const Capture& given = *scene.captures.at(0);
-  const Scene& real = *given.realScene;
-  std::vector<CapturedImage> images;
-  for (const CaptureFrame& frame : given.frames) {
-    Scene seen = real;
-    // The real scene from where the depth camera stood.
-    Camera camera;
-    camera.name = "eye";
-    camera.eye = frame.eye;
-    camera.target = frame.eye + frame.rotation * glm::dvec3(0, 0, 1);
-    camera.up = frame.rotation * glm::dvec3(0, -1, 0);
-    camera.fov = 2.0 * std::atan(0.5 * given.camera.height / given.camera.focal.y);
-    camera.width = given.camera.width, camera.height = given.camera.height;
-    seen.cameras = {camera};
-    ReferenceOptions options = quietly(samples);
-    options.useCache = false;
-    CapturedImage image;
-    image.width = camera.width, image.height = camera.height;
-    image.saturation = INFINITY;
-    image.colour = renderReference(seen, options).layers.at("full").values();
-    image.depth = seenDepths(seen, snapshotOf(seen, 0.0), 0.0).depth;
-    images.push_back(std::move(image));
-  }
-  class Clean : public CaptureSource {
-   public:
-    explicit Clean(std::vector<CapturedImage> all) : images_(std::move(all)) {}
-    CapturedImage read(std::size_t frame) const override { return images_.at(frame); }
-
-   private:
-    std::vector<CapturedImage> images_;
-  };
-  auto clean = std::make_shared<Capture>(given.name, given.camera, given.frames,
-                                         std::make_unique<Clean>(std::move(images)));
-  clean->realScene = given.realScene;
-  clean->hash = {2, static_cast<std::uint64_t>(samples)};
-  Scene result = scene;
-  result.captures = {clean};
-  return result;
 }
 
 }  // namespace
@@ -94,9 +45,7 @@ TEST_CASE("three pictures from three sides err less than one of them") {
     const Pipeline text = captured();
     options.parameters = text.settings({std::string("pictures=") + frames});
     const FrameResult frame = PipelineExecutor(device(), techniques(), scene, text, options).render(last);
-    ReferenceOptions truth = quietly(kSmall.referenceSamples);
-    truth.width = kSmall.width, truth.height = kSmall.height, truth.time = last;
-    return against(renderReference(scene, truth), frame.outputs.at("indirect_diffuse"), "indirect_diffuse",
+    return against(truthOf(scene, kSmall, last), frame.outputs.at("indirect_diffuse"), "indirect_diffuse",
                    0.0f);
   };
   const Against one = errorWith("1"), three = errorWith("3");
@@ -113,19 +62,8 @@ TEST_CASE("a lamp that the scene knows by the real one's name stands once in the
   options.width = 40, options.height = 30;
   const LayeredImage merged = renderReference(scene, options);
   // Far from virtual content the picture is that of the real room.
-  Scene alone = real;
-  alone.cameras = {[&] {
-    const CaptureFrame& frame = scene.captures.at(0)->frames.front();
-    Camera camera;
-    camera.name = "eye";
-    camera.eye = frame.eye;
-    camera.target = frame.eye + frame.rotation * glm::dvec3(0, 0, 1);
-    camera.up = frame.rotation * glm::dvec3(0, -1, 0);
-    camera.fov =
-        2.0 * std::atan(0.5 * scene.captures.at(0)->camera.height / scene.captures.at(0)->camera.focal.y);
-    camera.width = 40, camera.height = 30;
-    return camera;
-  }()};
+  const Capture& capture = *scene.captures.at(0);
+  const Scene alone = seenBy(capture, capture.frames.front(), real);
   const ImageBuffer truth = renderReference(alone, options).layers.at("full"),
                     &full = merged.layers.at("full");
   double sum = 0.0, expected = 0.0;
@@ -147,9 +85,7 @@ TEST_CASE("errors of captured frames", "[.]") {
   const Picture picture{160, 120, 512};
   KeptTable table("captured_frames.errors", {{"diffuse", 3, 0.02}, {"mean", 2, 0.02}, {"glossy", 3, 0.03}});
   const auto rows = [&](const Scene& one, double time, const std::string& beginning, const auto& each) {
-    ReferenceOptions options = quietly(picture.referenceSamples);
-    options.width = picture.width, options.height = picture.height, options.time = time;
-    const LayeredImage truth = renderReference(one, options);
+    const LayeredImage truth = truthOf(one, picture, time);
     each([&](const std::string& name, const Scene& scene, const Pipeline& text,
              const std::vector<std::string>& settings) {
       RenderOptions sized;
@@ -164,7 +100,7 @@ TEST_CASE("errors of captured frames", "[.]") {
   const std::vector<std::string> none;
   const Scene one = committed("mixed_reality"), three = committed("mixed_reality_three");
   rows(one, 0.0, "one picture", [&](const auto& row) {
-    const Scene clean = withCleanFrames(one, 512);
+    const Scene clean = withImages(one, exactImages(*one.captures.at(0), 512));
     row("", one, captured(), none);
     row(", exact", clean, captured(), {"brightest=1"});
     row(", exact, every pixel at every pixel", clean, captured("brute_force"), {"brightest=1"});
