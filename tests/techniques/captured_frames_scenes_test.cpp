@@ -3,8 +3,9 @@
 
 #include "lumivox/base/file.h"
 #include "support/against_reference.h"
+#include "support/captured_scenes.h"
+#include "support/captures.h"
 #include "support/kept_table.h"
-#include "support/real_scenes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -15,13 +16,6 @@ const Picture kSmall{80, 60, 128};
 
 Pipeline captured(const std::string& name = "") {
   return pipeline(name.empty() ? "captured_frames" : "captured_frames/captured_frames_" + name);
-}
-
-/// All bounces: a photograph holds them.
-LayeredImage truthOf(const Scene& scene, const Picture& picture) {
-  ReferenceOptions options = quietly(picture.referenceSamples);
-  options.width = picture.width, options.height = picture.height;
-  return renderReference(scene, options);
 }
 
 /// Indirect light of virtual surfaces over leaving the captured light out; real pixels are black in both.
@@ -51,9 +45,7 @@ TEST_CASE("three pictures from three sides err less than one of them") {
     const Pipeline text = captured();
     options.parameters = text.settings({std::string("pictures=") + frames});
     const FrameResult frame = PipelineExecutor(device(), techniques(), scene, text, options).render(last);
-    ReferenceOptions truth = quietly(kSmall.referenceSamples);
-    truth.width = kSmall.width, truth.height = kSmall.height, truth.time = last;
-    return against(renderReference(scene, truth), frame.outputs.at("indirect_diffuse"), "indirect_diffuse",
+    return against(truthOf(scene, kSmall, last), frame.outputs.at("indirect_diffuse"), "indirect_diffuse",
                    0.0f);
   };
   const Against one = errorWith("1"), three = errorWith("3");
@@ -70,7 +62,8 @@ TEST_CASE("a lamp that the scene knows by the real one's name stands once in the
   options.width = 40, options.height = 30;
   const LayeredImage merged = renderReference(scene, options);
   // Far from virtual content the picture is that of the real room.
-  const Scene alone = realSceneOf(*scene.captures.at(0));
+  const Capture& capture = *scene.captures.at(0);
+  const Scene alone = seenBy(capture, capture.frames.front(), *capture.realScene);
   const ImageBuffer truth = renderReference(alone, options).layers.at("full"),
                     &full = merged.layers.at("full");
   double sum = 0.0, expected = 0.0;
@@ -92,9 +85,7 @@ TEST_CASE("errors of captured frames", "[.]") {
   const Picture picture{160, 120, 512};
   KeptTable table("captured_frames.errors", {{"diffuse", 3, 0.02}, {"mean", 2, 0.02}, {"glossy", 3, 0.03}});
   const auto rows = [&](const Scene& one, double time, const std::string& beginning, const auto& each) {
-    ReferenceOptions options = quietly(picture.referenceSamples);
-    options.width = picture.width, options.height = picture.height, options.time = time;
-    const LayeredImage truth = renderReference(one, options);
+    const LayeredImage truth = truthOf(one, picture, time);
     each([&](const std::string& name, const Scene& scene, const Pipeline& text,
              const std::vector<std::string>& settings) {
       RenderOptions sized;
@@ -109,7 +100,7 @@ TEST_CASE("errors of captured frames", "[.]") {
   const std::vector<std::string> none;
   const Scene one = committed("mixed_reality"), three = committed("mixed_reality_three");
   rows(one, 0.0, "one picture", [&](const auto& row) {
-    const Scene clean = withCleanFrames(one, 512);
+    const Scene clean = withImages(one, exactImages(*one.captures.at(0), 512));
     row("", one, captured(), none);
     row(", one way", one, captured("one_way"), none);
     row(", exact", clean, captured(), {"brightest=1"});

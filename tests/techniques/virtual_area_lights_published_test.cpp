@@ -365,6 +365,23 @@ TEST_CASE("what vertices refer to is found once, by a pass of its own that light
   CHECK(buffer() == found);
 }
 
+TEST_CASE("vertices that belong to no object change nothing of the light at vertices") {
+  const Scene scene = litRoom(kPixels, kPixels);
+  // As a mesh leaves them whose parts the scene leaves out.
+  Scene gaps = scene;
+  constexpr std::uint32_t kUnused = 7;
+  gaps.positions.insert(gaps.positions.begin(), kUnused, glm::vec3(0.5f));
+  gaps.normals.insert(gaps.normals.begin(), kUnused, glm::vec3(0, 1, 0));
+  gaps.texcoords.insert(gaps.texcoords.begin(), kUnused, glm::vec2(0.0f));
+  for (std::uint32_t& index : gaps.indices) index += kUnused;
+  for (Object& object : gaps.objects) object.firstVertex += kUnused;
+  const Pipeline text = pipeline("virtual_area_lights/virtual_area_lights_as_published");
+  const std::vector<std::string> settings{"points=64", "map=16"};
+  const FrameResult expected = rendered(scene, text, settings), found = rendered(gaps, text, settings);
+  for (const char* output : {"indirect_diffuse", "indirect_glossy"})
+    CHECK(found.outputs.at(output).values() == expected.outputs.at(output).values());
+}
+
 TEST_CASE(
     "'as_published' in every pass is the same image as the printed words set one by one, and as its pipeline") {
   Scene scene = litRoom(kPixels, kPixels);

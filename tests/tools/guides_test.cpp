@@ -149,6 +149,9 @@ TEST_CASE("the stress battery's commands do what its guide says") {
 TEST_CASE("texts of scenes are checked and formatted as their guide says") {
   follow("docs/writing_a_scene.md");
 }
+TEST_CASE("captured pictures light what their guide says") {
+  follow("docs/captured_frames.md");
+}
 TEST_CASE("texts of pipelines are checked and measured as their guide says") {
   follow("docs/writing_a_pipeline.md");
 }

@@ -67,13 +67,10 @@ class NearestList {
                   {distanceSquared, point});
     if (found_.size() == most_) farthest_ = found_.back().first;
   }
-  /// Leaves out points beyond `farthest`, unless there is only one.
-  void append(std::vector<std::uint32_t>& to, double farthest) const {
-    for (std::size_t i = 0; i < most_; ++i) {
-      const bool counts =
-          i < found_.size() && (i == 0 || static_cast<double>(found_[i].first) <= farthest * farthest);
-      to.push_back(counts ? found_[i].second : VertexNeighbours::kNone);
-    }
+  /// Without points beyond `farthest`, unless there is only one. `to` has room for all.
+  void write(std::uint32_t* to, double farthest) const {
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      if (i == 0 || static_cast<double>(found_[i].first) <= farthest * farthest) to[i] = found_[i].second;
   }
 
  private:
@@ -121,9 +118,10 @@ VertexNeighbours neighboursOfVertices(const Scene& scene, const SurfacePointSet&
     return static_cast<std::size_t>(cell.x +
                                     placement.resolution.x * (cell.y + placement.resolution.y * cell.z));
   };
+  // Vertices of parts that the scene leaves out belong to no object.
   const std::size_t entries = scene.positions.size() * static_cast<std::size_t>(result.sides * neighbours);
-  result.any.reserve(entries);
-  result.glossy.reserve(entries);
+  result.any.assign(entries, VertexNeighbours::kNone);
+  result.glossy.assign(entries, VertexNeighbours::kNone);
   std::vector<SideLists> sides(static_cast<std::size_t>(result.sides),
                                {NearestList(neighbours), NearestList(neighbours)});
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -152,9 +150,11 @@ VertexNeighbours neighboursOfVertices(const Scene& scene, const SurfacePointSet&
             side.glossy.take(distanceSquared, index);
         }
       }
+      std::size_t at = std::size_t{vertex} * static_cast<std::size_t>(result.sides * neighbours);
       for (const SideLists& side : sides) {
-        side.any.append(result.any, set.farthest);
-        side.glossy.append(result.glossy, set.farthest);
+        side.any.write(&result.any[at], set.farthest);
+        side.glossy.write(&result.glossy[at], set.farthest);
+        at += static_cast<std::size_t>(neighbours);
       }
     }
   }
