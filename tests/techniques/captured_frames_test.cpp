@@ -97,6 +97,61 @@ TEST_CASE("in a white furnace the eye receives pi L times the form factor of the
   CHECK(irradiance == Approx(kPi * 3.0 * factor).epsilon(0.02));
 }
 
+TEST_CASE("elsewhere in a white furnace pi L times the form factors of what is seen of each wall arrives") {
+  // Two walls that meet 2 m before the eye, each seen to the middle of the picture.
+  constexpr double kSlant = 0.6, kRadiance = 3.0;
+  const auto left = plane(2.0, kSlant, glm::vec3(kRadiance)),
+             right = plane(2.0, -kSlant, glm::vec3(kRadiance));
+  const CaptureCamera camera = smallCamera(160, 120, 120.0);
+  const CapturedMap map =
+      lightsIn(sceneWith(captureOf(
+                   camera, {[&](const glm::dvec2& ray) { return ray.x < 0.0 ? left(ray) : right(ray); }})),
+               kRaw);
+  // Corners of what is seen of a wall, in the scene's axes, so that it is to the left of its border from the
+  // eye.
+  const auto cornersOf = [&](const SeenAlong& wall, double from, double to) {
+    const double down = 0.5 * camera.height / camera.focal.y;
+    std::vector<glm::dvec3> corners;
+    for (const glm::dvec2& ray : {glm::dvec2(from, down), {to, down}, {to, -down}, {from, -down}}) {
+      const double depth = wall(ray).depth;
+      corners.emplace_back(ray.x * depth, -ray.y * depth, -depth);
+    }
+    return corners;
+  };
+  const double across = 0.5 * camera.width / camera.focal.x;
+  const std::vector<std::vector<glm::dvec3>> walls{cornersOf(left, -across, 0.0),
+                                                   cornersOf(right, 0.0, across)};
+  struct Receiver {
+    glm::dvec3 place, normal;
+  };
+  for (const Receiver& at : {Receiver{{0.0, 0.0, -1.0}, {0, 0, -1}},
+                             Receiver{{0.3, 0.2, -0.6}, glm::normalize(glm::dvec3(0.2, -0.1, -1))},
+                             Receiver{{-0.5, 0.1, 0.5}, {0, 0, -1}}}) {
+    CAPTURE(at.place.x, at.place.y, at.place.z);
+    // Lambert's formula for a polygon above the receiver's horizon.
+    double factor = 0.0;
+    for (const auto& corners : walls) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 a = glm::normalize(corners[i] - at.place),
+                         b = glm::normalize(corners[(i + 1) % corners.size()] - at.place);
+        sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), at.normal);
+      }
+      factor += std::abs(sum) / (2.0 * kPi);
+    }
+    double irradiance = 0.0;
+    for (const PixelLight& light : map.pixels) {
+      if (!light.isSurface) continue;
+      const glm::dvec3 path = glm::dvec3(light.position) - at.place;
+      const double distance = glm::length(path);
+      irradiance +=
+          static_cast<double>(light.flux.x) / kPi * std::max(0.0, glm::dot(at.normal, path) / distance) *
+          std::max(0.0, glm::dot(glm::dvec3(light.normal), -path) / distance) / (distance * distance);
+    }
+    CHECK(irradiance == Approx(kPi * kRadiance * factor).epsilon(0.05));
+  }
+}
+
 TEST_CASE("holes, flying pixels and colours that are no radiance give no light") {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const CaptureCamera camera = smallCamera();
