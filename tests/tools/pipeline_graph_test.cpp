@@ -189,7 +189,7 @@ TEST_CASE("the picture of each technique's pipeline is the graph of the committe
     INFO(name << ": lumivox explain " << sceneFor(name).string() << " " << file.string()
               << " --no-times --graph " << picture.string());
     REQUIRE(fs::exists(picture));
-    CHECK(fs::file_size(picture) <= 40 * 1024);
+    CHECK(fs::file_size(picture) <= 64 * 1024);
     CHECK(textIn(readFile(picture)) == graphOf(Pipeline::load(file), sceneFor(name)));
     ++pictures;
   }
