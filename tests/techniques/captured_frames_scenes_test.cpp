@@ -80,6 +80,20 @@ TEST_CASE("a lamp that the scene knows by the real one's name stands once in the
   CHECK(full.at(20, 10, 0) > 0.0f);
 }
 
+TEST_CASE("captured light is judged by all bounces, and in a scene without a capture by one") {
+  const auto bouncesIn = [](const Scene& scene, const RenderOptions& options) {
+    return PipelineExecutor(device(), techniques(), scene, captured(), options)
+        .indirectBounces()
+        .at("indirect_diffuse");
+  };
+  RenderOptions everything;
+  everything.keepEverything = true;
+  for (const RenderOptions& options : {RenderOptions{}, everything}) {
+    CHECK(bouncesIn(committed("mixed_reality"), options) == 32);
+    CHECK(bouncesIn(committed("cornell"), options) == 1);
+  }
+}
+
 // The numbers of the card; minutes.
 TEST_CASE("errors of captured frames", "[.]") {
   const Picture picture{160, 120, 512};

@@ -22,14 +22,20 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Per pass, the largest number of bounces that it or one of its sources models.
-std::vector<int> bouncesOf(const BoundGraph& graph) {
+/// Per pass, the largest number of bounces that it or one of its sources models. Outputs that need what the
+/// scene does not have count for nothing, whether they are left out or not.
+std::vector<int> bouncesOf(const BoundGraph& graph, const SceneTraits& traits) {
+  const auto isMet = [&](Needs needs) { return unmetNeed(needs, traits).empty(); };
   std::vector<int> bounces(graph.passes.size(), 0);
   for (const int position : graph.order) {
     const auto index = static_cast<std::size_t>(position);
-    bounces[index] = graph.passes[index].object->indirectBounces();
+    const Pass& pass = *graph.passes[index].object;
+    const std::vector<OutBase*>& outputs = pass.outputs();
+    if (isMet(pass.needs()) && std::any_of(outputs.begin(), outputs.end(),
+                                           [&](const OutBase* output) { return isMet(output->needs()); }))
+      bounces[index] = pass.indirectBounces();
     for (const OutputIndex source : graph.passes[index].sources)
-      if (source.valid())
+      if (source.valid() && isMet(graph.output(source).needs()))
         bounces[index] = std::max(bounces[index], bounces[static_cast<std::size_t>(source.pass)]);
   }
   return bounces;
@@ -371,7 +377,7 @@ std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instr
 }
 
 std::map<std::string, int> PipelineExecutor::State::indirectBounces() const {
-  const std::vector<int> modelled = bouncesOf(graph);
+  const std::vector<int> modelled = bouncesOf(graph, sceneTraits);
   std::map<std::string, int> bounces;
   for (const BoundOutput& bound : graph.outputs) {
     const Contributes component = graph.output(bound.source).contributes();
