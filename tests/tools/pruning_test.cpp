@@ -124,9 +124,9 @@ void checkSameImageThrough(const Share& share, const std::filesystem::path& scen
   }
 }
 
-/// Scenes whose models and captures lie beside them in the tree, or those that need some from elsewhere.
+/// Scenes whose models lie beside them in the tree, or those that need models from elsewhere.
 std::vector<std::filesystem::path> scenes(bool ownModels) {
-  static const std::regex modelFile("(?:file|folder)\\s+\"([^\"]+)\"");
+  static const std::regex modelFile("file\\s+\"([^\"]+)\"");
   std::vector<std::filesystem::path> files;
   for (const auto& file : filesIn("scenes", ".scene")) {
     const std::string text = readFile(file);
