@@ -225,15 +225,12 @@ TEST_CASE("models are found on the asset path and in LUMIVOX_ASSETS") {
 }
 
 TEST_CASE("every committed scene passes the check") {
-  const std::filesystem::path models = test::sourceDirectory() / "../shared/models";
-  if (!std::filesystem::exists(models))
+  if (!std::filesystem::exists(test::sourceDirectory() / "../shared/models"))
     return test::skip("the models of some scenes are not on this machine");
   int checked = 0;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(test::sourceDirectory() / "scenes")) {
     if (entry.path().extension() != ".scene") continue;
-    // A recording that readers fetch: docs/captured_frames.md.
-    if (entry.path().stem() == "freiburg1_desk" && !std::filesystem::exists(models / "tum")) continue;
     INFO(entry.path());
     CHECK_NOTHROW(checkScene(entry.path()));
     ++checked;
