@@ -113,3 +113,25 @@ TEST_CASE(
     }
   }
 }
+
+TEST_CASE("the scene of the guide reads a sequence in the layout of the benchmark") {
+  const std::string guide = readFile(sourceDirectory() / "docs/captured_frames.md"),
+                    begin = "```text\nscene ";
+  const std::size_t from = guide.find(begin);
+  REQUIRE(from != std::string::npos);
+  std::string text = guide.substr(from + 8, guide.find("\n```", from) - from - 8);
+  // In place of the sequence, which is not here, pictures of the same layout.
+  for (const auto& [theirs, ours] : {std::pair("tum/rgbd_dataset_freiburg1_desk", "captures/cornell_past"),
+                                     {"range 0..89", "range 0..3"}}) {
+    const std::size_t at = text.find(theirs);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, std::string(theirs).size(), ours);
+  }
+  const Scene scene = loadSceneText(text, sourceDirectory() / "scenes/desk.scene");
+  REQUIRE(scene.captures.size() == 1);
+  const Capture& capture = *scene.captures.front();
+  CHECK(capture.frames.size() == 4);
+  CHECK(capture.camera.distortion[0] == Approx(0.2624));
+  // As the guide says: tx ty tz of the file, here 0.278 0.42 -0.8, becomes tx tz -ty.
+  CHECK(glm::length(capture.frames[0].eye - glm::dvec3(0.278, -0.8, -0.42)) < 1e-3);
+}

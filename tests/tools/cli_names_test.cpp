@@ -56,7 +56,7 @@ TEST_CASE("describe fits the terminal, and names many passes with a port of the 
   }
   const std::string text = std::regex_replace(result.output, std::regex("\\s+"), " ");
   CHECK(contains(
-      text, "input light of 7 passes: implicit_visibility.display, light_propagation_volumes.propagate, "));
+      text, "input light of 8 passes: implicit_visibility.display, light_propagation_volumes.propagate, "));
   CHECK(contains(text, "lumivox describe implicit_visibility.display explains one of them"));
   CHECK_FALSE(contains(text, "(SparseLight): averaged light, of gather"));
   // What goes on stands below the column that it belongs to.
