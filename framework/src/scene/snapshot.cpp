@@ -313,6 +313,7 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   }
   traits.emission = traits.areaLights > 0;
   traits.environment = scene.environment != glm::vec3(0.0f);
+  traits.environmentMap = traits.environment && scene.environmentMap != nullptr;
   traits.medium = !scene.media.empty();
   traits.particles = std::any_of(scene.media.begin(), scene.media.end(),
                                  [](const Medium& made) { return made.particles > 0; });
@@ -321,10 +322,11 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   traits.movingCaptures = std::any_of(scene.captures.begin(), scene.captures.end(), moves);
   traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& camera) {
     return camera.capture >= 0 ? moves(scene.captures.at(static_cast<std::size_t>(camera.capture)))
-                               : camera.keys.size() > 1;
+                               : camera.keys.size() > 1 || camera.motion;
   });
   for (const Light& light : scene.lights) {
-    if (light.power == glm::vec3(0.0f)) continue;
+    if (light.power == glm::vec3(0.0f) && !light.motion) continue;
+    traits.movingLights = traits.movingLights || light.motion;
     traits.directionalLights += light.kind == LightKind::directional ? 1 : 0;
     traits.pointLights += light.kind == LightKind::point ? 1 : 0;
     traits.spotLights += light.kind == LightKind::spot ? 1 : 0;
@@ -335,8 +337,8 @@ SceneTraits SceneTraits::of(const Scene& scene) {
 SceneTraits SceneTraits::everything() {
   SceneTraits traits;
   traits.triangles = traits.textures = traits.masks = traits.glossy = traits.emission = traits.environment =
-      traits.medium = traits.particles = traits.captures = true;
-  traits.movingGeometry = traits.movingCamera = traits.movingCaptures = true;
+      traits.environmentMap = traits.medium = traits.particles = traits.captures = true;
+  traits.movingGeometry = traits.movingCamera = traits.movingCaptures = traits.movingLights = true;
   traits.directionalLights = traits.pointLights = traits.spotLights = traits.areaLights = 1;
   return traits;
 }

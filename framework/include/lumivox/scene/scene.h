@@ -14,6 +14,7 @@
 
 #include "lumivox/base/hash.h"
 #include "lumivox/scene/capture.h"
+#include "lumivox/scene/environment.h"
 
 namespace lumivox {
 
@@ -70,6 +71,9 @@ struct VertexSequence {
   bool operator==(const VertexSequence&) const = default;
 };
 
+/// Motion that a model file brings along: of nodes, by morph targets and by skins (scene/model_animation.h).
+class ModelAnimation;
+
 /// A named piece of geometry that moves as one: "room/tall_box" is the object or group tall_box of the mesh
 /// block room.
 struct Object {
@@ -79,6 +83,7 @@ struct Object {
   glm::dmat4 placement{1.0};  ///< object to world, before motion
   std::optional<RigidMotion> motion;
   std::optional<VertexSequence> sequence;
+  std::shared_ptr<const ModelAnimation> animation;  ///< null where the model file brings none
   /// World bounds (low, high) of the placed vertices before motion; the loader fills them in, so that no
   /// frame computes them again. Computed whenever they are needed when absent.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> placedBounds;
@@ -86,11 +91,32 @@ struct Object {
   /// Filled in by the loader like placedBounds.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> sweptBounds;
   bool real = false;  ///< of the scene that a capture stands for: the reference alone has such objects
-  bool animated() const { return motion.has_value() || sequence.has_value(); }
+  bool animated() const { return motion.has_value() || sequence.has_value() || animation != nullptr; }
   bool operator==(const Object&) const = default;
 };
 
 enum class LightKind { directional, point, spot };
+
+/// How the keys of an animation are joined: linearly, or each value stays until the next key.
+enum class Interpolation { linear, step };
+
+/// What a light is at a time. A key sets what it names; a value passes from key to key among those that set
+/// it, and stays at the first and behind the last.
+struct LightKey {
+  double time = 0.0;  ///< s
+  std::optional<glm::dvec3> position, direction;
+  std::optional<glm::vec3> power;
+  std::optional<float> innerAngle, outerAngle;
+  bool operator==(const LightKey&) const = default;
+};
+
+/// Keys first; then the rigid motion turns and moves place and direction.
+struct LightMotion {
+  std::optional<RigidMotion> rigid;
+  std::vector<LightKey> keys;  ///< in rising order of time
+  Interpolation interpolation = Interpolation::linear;
+  bool operator==(const LightMotion&) const = default;
+};
 
 /// A light without extent. Lights with extent are emissive triangles (Material::emission); the sky is
 /// Environment.
@@ -104,15 +130,17 @@ struct Light {
   float innerAngle = 0.0f;  ///< spot, half angle of full intensity, rad
   float outerAngle =
       0.0f;  ///< spot, half angle where it ends, rad; intensity * smoothstep(cos outer, cos inner, cos theta)
+  std::optional<LightMotion> motion;
 };
 
 struct CameraKey {
   double time = 0.0;  ///< s
   glm::dvec3 eye{0}, target{0};
+  std::optional<double> fov;  ///< rad; without it the camera's
 };
 
-/// Pinhole or thin lens, with square pixels. With keys, eye and target are interpolated linearly in time and
-/// clamp at the ends.
+/// Pinhole or thin lens, with square pixels. With keys, eye, target and fov are interpolated in time and
+/// clamp at the ends; then the rigid motion turns and moves the whole camera.
 struct Camera {
   std::string name;
   glm::dvec3 eye{0, 0, 1}, target{0}, up{0, 1, 0};
@@ -122,6 +150,8 @@ struct Camera {
   double focus =
       0.0;  ///< distance of the plane in focus along the view axis, m; above 0 where there is a lens
   std::vector<CameraKey> keys;
+  Interpolation interpolation = Interpolation::linear;  ///< of the keys
+  std::optional<RigidMotion> motion;
   /// Index into Scene::captures: the camera stands where that capture's camera stood, and eye, target, up,
   /// fov, lens and keys do not count. -1 for none.
   int capture = -1;
@@ -171,7 +201,9 @@ struct Scene {
   std::vector<SurfaceTexture> textures;
   std::vector<Light> lights;
   std::vector<Camera> cameras;  ///< at least one
-  glm::vec3 environment{0.0f};  ///< constant radiance over the sphere, W/(sr m^2)
+  /// Radiance of the sky, W/(sr m^2): constant over the sphere, or the mean of the map.
+  glm::vec3 environment{0.0f};
+  std::shared_ptr<const EnvironmentMap> environmentMap;  ///< null: the environment is constant
   std::vector<Medium> media;
   std::vector<std::shared_ptr<const Capture>> captures;
 
@@ -183,8 +215,8 @@ struct Scene {
 /// Features of a scene, and so what a pipeline can leave out. Computed from the content, never declared.
 struct SceneTraits {
   bool triangles = false, textures = false, masks = false, glossy = false, emission = false,
-       environment = false, medium = false, particles = false, captures = false;
-  bool movingGeometry = false, movingCamera = false,
+       environment = false, environmentMap = false, medium = false, particles = false, captures = false;
+  bool movingGeometry = false, movingCamera = false, movingLights = false,
        movingCaptures = false;  ///< movingCaptures: one of more than one frame
   int directionalLights = 0, pointLights = 0, spotLights = 0,
       areaLights = 0;  ///< area: objects with emissive parts
