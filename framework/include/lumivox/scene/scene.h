@@ -130,13 +130,13 @@ struct Light {
   float innerAngle = 0.0f;  ///< spot, half angle of full intensity, rad
   float outerAngle =
       0.0f;  ///< spot, half angle where it ends, rad; intensity * smoothstep(cos outer, cos inner, cos theta)
-  std::optional<LightMotion> motion;
+  std::optional<LightMotion> motion = std::nullopt;
 };
 
 struct CameraKey {
   double time = 0.0;  ///< s
   glm::dvec3 eye{0}, target{0};
-  std::optional<double> fov;  ///< rad; without it the camera's
+  std::optional<double> fov = std::nullopt;  ///< rad; without it the camera's
 };
 
 /// Pinhole or thin lens, with square pixels. With keys, eye, target and fov are interpolated in time and
