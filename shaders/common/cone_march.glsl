@@ -14,13 +14,16 @@
 #pragma lumivox axis MEDIUM none even varying
 #include "common/cones.glsl"
 #include "common/random.glsl"
+#if ENVIRONMENT
+#include "common/environment.glsl"
+#endif
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
 
 // C++ side: ConeMarch in techniques/voxel_cone_tracing/cones/march.h, and gather.cpp of layered_reflective_shadow_maps.
 layout(std140, binding = 2) uniform March {
-  vec3 environment;   // radiance of the environment
+  vec3 environment;   // mean radiance of the environment
   float maxDistance;  // m
   float stepShare;    // step along a cone as a share of its diameter
   float offset;       // start of a cone along the normal, in voxels
@@ -33,11 +36,6 @@ layout(std140, binding = 2) uniform March {
 };
 
 const int kMediumSteps = 8;   // step limit through a heterogeneous medium, within one step of a cone
-
-#if ENVIRONMENT
-// Radiance of the environment along an unoccluded cone. The environment is uniform, so the axis and the width do not matter.
-vec3 environmentAlong(vec3 direction, float tanHalfAngle) { return environment; }
-#endif
 
 // Random shift of a cone's first sample, [0, 1): depends on the pixel, the cone and the seed.
 float shiftOf(uint cone) {
@@ -106,7 +104,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
 #if MEDIUM != MEDIUM_NONE
   if (opacity < kOpaque) passed *= exp(-opticalDepth(apex + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
-  radiance += passed * (max(1.0 - opacity, 0.0) * environmentAlong(direction, tanHalfAngle));
+  radiance += passed * (max(1.0 - opacity, 0.0) * environmentAlong(environment, direction, tanHalfAngle));
 #endif
   return radiance;
 }

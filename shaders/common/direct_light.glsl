@@ -3,6 +3,7 @@
 // i, in [0,1]: posWorld is on the surface, geometricNormal faces the lit side, and toLight has unit length.
 #ifndef LUMIVOX_DIRECT_LIGHT
 #define LUMIVOX_DIRECT_LIGHT
+// An including file first declares vec3 environmentSeen(vec3 constant, ivec2 pixel): what a camera ray sees that meets no surface.
 #include "common/brdf.glsl"
 #if LIGHTS
 #include "common/lights.glsl"
@@ -66,7 +67,7 @@ vec3 reflectedLight(ivec2 pixel, vec3 posWorld) {
 // Radiance towards the eye, W/(sr m^2).
 vec3 directLight(ivec2 pixel) {
   vec4 position = texelFetch(gPosition, pixel, 0);
-  if (position.w == 0.0) return environment;
+  if (position.w == 0.0) return environmentSeen(environment, pixel);
   vec3 radiance = vec3(0.0);
 #if EMISSION
   radiance += imageLoad(emissionImage, pixel).rgb;

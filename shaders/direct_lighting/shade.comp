@@ -10,6 +10,7 @@
 #if SHADOWS
 #define SHADOW_VIEWS
 #endif
+#include "common/environment_seen.glsl"
 #include "common/direct_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -8,6 +8,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define VOLUMES 1
 #endif
 #include "reconstruct.glsl"
+#if OF == OF_LIGHT
+#include "common/environment.glsl"
+#endif
 layout(constant_id = 0) const int closure = 0;  // 1: keeps the difference of both sides, and makes neither negative
 
 layout(std140, binding = 0) uniform Gathering {
@@ -46,7 +49,8 @@ void main() {
   if (isSurface && isInside) arriving = arrivingAt(surface, texelFetch(gGeometricNormal, pixel, 0).xyz);
 #if OF == OF_LIGHT
   // Outside the volume, only the environment is reflected.
-  vec3 reflected = isSurface ? environment : vec3(0.0), cut = vec3(0.0);
+  const float kTanOfPi = 1.7320508;  // of a cone of pi sr, the projected solid angle of a hemisphere
+  vec3 reflected = isSurface ? environmentAlong(environment, normal, kTanOfPi) : vec3(0.0), cut = vec3(0.0);
   if (isSurface && isInside)
     for (int channel = 0; channel < 3; ++channel)
       reflected[channel] = meanRadiance(arriving.volumes[channel] * unit, normal, cut[channel]);

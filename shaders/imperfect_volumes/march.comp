@@ -6,6 +6,9 @@
 #pragma lumivox axis WALK steps exact
 #pragma lumivox axis LISTED 0 1
 #pragma lumivox require BIT_RULE == hierarchy
+#if OF == OF_LIGHT
+#include "common/environment.glsl"
+#endif
 #include "common/random.glsl"
 #include "common/voxel.glsl"
 #include "volume.glsl"
@@ -117,7 +120,8 @@ vec3 normalIn(ivec3 voxel) { return harmonics != 0 ? vec3(0.0) : texelFetch(mean
 
 vec3 seenAlong(vec3 origin, vec3 direction) {
   Meeting met = meet(origin, direction);
-  if (!met.any) return environment;
+  // Each ray stands for 4 pi over the number of rays: a cone of that width.
+  if (!met.any) return environmentAlong(environment, direction, sqrt(2.0 / float(pairs)));
 #if WALK == WALK_STEPS
   if (linear != 0) {
     ivec3 low = ivec3(floor(met.place - 0.5));

@@ -15,7 +15,8 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 cellInOutside;   // size of a cell in texture coordinates of the outside grid
   float occlusion;
   vec3 lowInOutside;    // low corner of the grid in these coordinates
-  vec4 environment;     // light in a cell of this size, W/sr
+  vec4 environment;     // mean light in a cell of this size, W/sr
+  vec4 environmentSlope[3];  // of red, green and blue: xyz the coefficients of band 1 in the order of a cell's light, W/sr
 };
 layout(binding = 0) uniform sampler3D red;
 layout(binding = 1) uniform sampler3D green;
@@ -53,9 +54,9 @@ void main() {
     light[1] += open * crossFace(texture(greenOutside, texcoord) * outsideShare, along);
     light[2] += open * crossFace(texture(blueOutside, texcoord) * outsideShare, along);
 #else
-    // The same in all directions: c0 = I / Y0.
+    // The mean over all directions: c0 = I / Y0.
     for (int channel = 0; channel < 3; ++channel)
-      light[channel] += open * crossFace(vec4(environment[channel] / kY0, 0.0, 0.0, 0.0), along);
+      light[channel] += open * crossFace(vec4(environment[channel] / kY0, environmentSlope[channel].xyz), along);
 #endif
   }
 #endif

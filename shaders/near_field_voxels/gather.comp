@@ -10,6 +10,7 @@
 #pragma lumivox require ARRIVING || OCCLUSION || FETCHES
 #pragma lumivox require ARRIVING || RADIANCE == none
 #include "common/cones.glsl"
+#include "common/environment.glsl"
 #include "common/random.glsl"
 #include "common/bit_rays.glsl"
 #if RADIANCE == RADIANCE_MAP
@@ -138,7 +139,8 @@ void follow(vec3 origin, vec3 direction, inout Sums sums) {
   bool meets = hit.found && hit.t <= lightReach;
   if (!(hit.found && hit.t <= occlusionReach - start)) sums.open += 1.0;
   bool beyond = beyondRadius != 0 ? !meets : !hit.found && leavesGrid() <= lightReach;
-  if (beyond && addsRest != 0) addLight(sums, environment);
+  // A ray stands for the share 1 / rays of pi, the projected solid angle of all: a cone of that width.
+  if (beyond && addsRest != 0) addLight(sums, environmentAlong(environment, direction, inversesqrt(float(rays))));
 #if RADIANCE != RADIANCE_NONE
   if (meets) addLight(sums, radianceOf(hit));
 #endif

@@ -3,6 +3,7 @@
 // directions the light of the surfaces that occlude them.
 #pragma lumivox axis EMISSION 0 1
 #include "screen.glsl"
+#include "common/environment.glsl"
 
 const int kSolidAngle = 0, kPublished = 1;
 layout(constant_id = 1) const int area = kSolidAngle;
@@ -49,7 +50,8 @@ vec3 arriving(ivec2 pixel, vec3 posWorld) {
     if (isBehindVisible(posWorld + around(normal, cosTheta, place.x) * (radius * (1.0 - place.y)), other))
       sum += sentFrom(other, posWorld, normal, cosTheta);
     else
-      sum += environment * (2.0 * cosTheta / float(samples));
+      // Each direction stands for 2 pi / samples of the hemisphere: a cone of that width.
+      sum += environmentAlong(environment, around(normal, cosTheta, place.x), sqrt(2.0 / float(samples))) * (2.0 * cosTheta / float(samples));
   }
   return sum;
 }

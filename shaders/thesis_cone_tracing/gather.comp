@@ -7,6 +7,9 @@
 #pragma lumivox require DIFFUSE || GLOSSY
 #pragma lumivox axis ENVIRONMENT 0 1
 #include "common/random.glsl"
+#if ENVIRONMENT
+#include "common/environment.glsl"
+#endif
 #include "store.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -57,7 +60,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float ratio, uint cone) {
   }
   radiance *= storeUnit;
 #if ENVIRONMENT
-  radiance += max(1.0 - opacity, 0.0) * environment;
+  radiance += max(1.0 - opacity, 0.0) * environmentAlong(environment, direction, 0.5 * ratio);
 #endif
   return radiance;
 }

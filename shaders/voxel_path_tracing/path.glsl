@@ -7,6 +7,7 @@
 #include "common/bit_rays.glsl"
 #include "common/brdf.glsl"
 #include "common/cones.glsl"
+#include "common/environment.glsl"
 #include "common/random.glsl"
 #if MAP
 #include "common/back_projection.glsl"
@@ -208,7 +209,7 @@ Meeting followed(vec3 start, vec3 direction) {
   BitHit hit = firstBit(start, direction, reach, resolution);
   if (hit.found && hit.t <= reach) return meetingOf(hit);
   Surface none = Surface(start, direction, direction, -direction, vec3(0.0), vec4(0.0));
-  return Meeting(!hit.found && leavesGrid() <= reach ? environment : vec3(0.0), false, none);
+  return Meeting(!hit.found && leavesGrid() <= reach ? environmentAlong(environment, direction, 0.0) : vec3(0.0), false, none);
 }
 
 // The throughput of a path after Russian roulette; zero: the path ends.

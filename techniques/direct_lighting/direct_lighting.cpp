@@ -5,6 +5,7 @@
 #include "direct_lighting_shaders.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/light_views.h"
 #include "lumivox/toolkit/media.h"
 #include "lumivox/toolkit/visible_surface.h"
@@ -92,8 +93,9 @@ class ShadePass : public Pass {
     const auto withoutExtent = static_cast<int>(frame.snapshot().lights.size());  // they come first
     const int lightCount = areaLights ? lights.count : std::min(lights.count, withoutExtent);
     radiance = Image{frame.image("direct radiance")};
-    frame.dispatch(frame.program(variant),
-                   {shade::directLight({.eyeWorld = frame.snapshot().camera.eye,
+    frame.dispatch(frame.program(variant, shade::Constants{.environmentMap = environmentMapOf(frame)}),
+                   {EnvironmentViewBinding(frame),
+                    shade::directLight({.eyeWorld = frame.snapshot().camera.eye,
                                         .lightCount = lightCount,
                                         .environment = frame.sceneDescription().environment,
                                         .mediumSteps = mediumSteps}),

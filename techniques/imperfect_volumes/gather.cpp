@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
+#include "lumivox/toolkit/environment.h"
 #include "volume.h"
 
 namespace lumivox::imperfect_volumes {
@@ -86,8 +87,10 @@ class GatherPass : public Pass {
                           &normals = free ? attributes->normal : volume.coefficients[0];
     frame.dispatch(
         frame.program(gather::Variant{of},
-                      neighbours.in(gather::Constants{.closure = negative == Negative::closure})),
-        {gather::gathering({.environment = frame.sceneDescription().environment, .unit = unit}),
+                      neighbours.in(gather::Constants{.closure = negative == Negative::closure,
+                                                      .environmentMap = environmentMapOf(frame)})),
+        {EnvironmentBinding(frame),
+         gather::gathering({.environment = frame.sceneDescription().environment, .unit = unit}),
          volumeBinding(volume.grid, occupied), neighbours.binding(), GBufferBinding(*gbuffer),
          ShLevelBinding(volume, gpu::Sampling::linear), gather::opacityAround(around, gpu::Sampling::nearest),
          gather::normalsAround(normals, gpu::Sampling::nearest), to},

@@ -10,6 +10,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/toolkit/bit_grid.h"
 #include "lumivox/toolkit/counts.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "lumivox/toolkit/volume_room.h"
 #include "volume.h"
@@ -249,6 +250,7 @@ class MarchPass : public Marching {
     auto volumes = emptyVolumes(frame, "radiance that arrives");
     march::Constants choices = constants();
     choices.harmonics = sendsBands();
+    choices.environmentMap = environmentMapOf(frame);
     const shader::BoundProgram& program = frame.program(variant(from, march::Variant::ofLight), choices);
     // A texture must be bound even where no normals are read.
     const gpu::TextureRef& normals = readsAttributes() ? attributes->normal : sent.coefficients[0];
@@ -256,7 +258,7 @@ class MarchPass : public Marching {
     const glm::vec3 sky =
         bounce == 0 || feed == Feed::printed ? frame.sceneDescription().environment : glm::vec3(0.0f);
     sendRays(frame, program,
-             {images(volumes), march::meanNormals(normals, gpu::Sampling::nearest),
+             {images(volumes), EnvironmentBinding(frame), march::meanNormals(normals, gpu::Sampling::nearest),
               ShLevelBinding(sent, gpu::Sampling::nearest)},
              {.environment = sky, .reach = kNoEnd, .reflectedUnit = unit, .bounce = bounce}, from);
     return volumes;

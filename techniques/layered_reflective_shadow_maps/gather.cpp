@@ -9,6 +9,7 @@
 #include "layered_reflective_shadow_maps_shaders.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "opacity_levels.h"
@@ -153,7 +154,8 @@ class GatherPass : public Pass {
                                         .shareRule = static_cast<int>(static_cast<Share>(share)),
                                         .facingRule = facing,
                                         .slantRule = slant,
-                                        .pattern = pattern});
+                                        .pattern = pattern,
+                                        .environmentMap = environmentMapOf(frame)});
     gather::Parameters parameters{.eyeWorld = frame.snapshot().camera.eye, .first = true};
     forEachPortion(count, turnsOfCone(asked), [&](int firstCone, int conesAtOnce) {
       parameters.firstCone = firstCone;
@@ -166,7 +168,8 @@ class GatherPass : public Pass {
           frame.dispatch(program,
                          {gather::parameters(parameters), GBufferBinding(*gbuffer),
                           storeOf(light, ofPortion, layer, asked.layers),
-                          marchOf(frame, light == 0 && layer == 0), gather::sumImage(image)},
+                          marchOf(frame, light == 0 && layer == 0), EnvironmentBinding(frame),
+                          gather::sumImage(image)},
                          pixels(frame));
           parameters.first = false;
         }

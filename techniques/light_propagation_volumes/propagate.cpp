@@ -1,6 +1,7 @@
 // Propagates light from cell to cell: Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis Gomes 2015, Sec. 4.3.3.
 #include <cmath>
 
+#include "lumivox/toolkit/environment.h"
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
@@ -112,6 +113,13 @@ class PropagatePass : public Pass {
       variant.outside = start::Variant::outsideEnvironment;
       parameters.environment =
           glm::vec4(frame.sceneDescription().environment * (kMeanProjection * cell * cell), 0.0f);
+      if (frame.traits().environmentMap) {
+        // Light from a direction travels the opposite way: the odd band changes its sign.
+        const auto bands = environmentBands(frame.sceneDescription());
+        for (std::size_t c = 0; c < bands.size(); ++c)
+          parameters.environmentSlope[c] =
+              -kMeanProjection * cell * cell * glm::vec4(bands[c].y, bands[c].z, bands[c].w, 0.0f);
+      }
     }
     frame.dispatch(frame.program(variant, start::Constants{.cosineLobe = lobe == Lobe::cosine}),
                    {start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,

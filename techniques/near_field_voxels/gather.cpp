@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lumivox/base/error.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "near_field_voxels_shaders.h"
@@ -143,14 +144,15 @@ class GatherPass : public Pass {
   }
   int every() const { return 1 << static_cast<int>(static_cast<Pixels>(pixelsOf)); }
 
-  gather::Constants constantsOf() const {
+  gather::Constants constantsOf(const PassContext& frame) const {
     return {.taps = projection.taps(),
             .frontTest = projection.front(),
             .hitPoint = static_cast<int>(static_cast<HitPoint>(hit)),
             .rotation = static_cast<int>(static_cast<Rotation>(rotation)),
             .hammersley = sequence == Sequence::hammersley,
             .offsetByDiagonal = offsetUnit == OffsetUnit::diagonal,
-            .printedTests = asPublished};
+            .printedTests = asPublished,
+            .environmentMap = environmentMapOf(frame)};
   }
 
   void run(PassContext& frame) override {
@@ -183,12 +185,13 @@ class GatherPass : public Pass {
                                   .occlusion = occlusion.wanted(),
                                   .fetches = fetches.wanted(),
                                   .bitRule = method.axis()};
-    const shader::BoundProgram& program = frame.program(variant, constantsOf());
+    const shader::BoundProgram& program = frame.program(variant, constantsOf(frame));
     // Read only after earlier frames, but always bound.
     const auto earlier = [&](const History<gpu::TextureRef>& sum) -> const gpu::TextureRef& {
       return sum.previous ? sum.previous : gbuffer->position;
     };
     shader::BindingSet bound{GBufferBinding(*gbuffer),
+                             EnvironmentBinding(frame),
                              method.binding(frame, *bits),
                              gather::arrivingImage(arrives),
                              gather::lightSum(light.current),

@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "screen_space_shaders.h"
 
 namespace lumivox::screen_space {
@@ -131,11 +132,13 @@ class SsdoPass : public ScreenPass {
           fmt::format("screen_space.ssdo: 'direct' has {} x {} pixels; expected the {} x {} of 'gbuffer'",
                       light.width, light.height, surfaces.width, surfaces.height));
     const gpu::TextureRef& emission = gbuffer->emission;
-    arriving = sampled(frame, code::ssdo::Variant{.emission = emission != nullptr},
-                       code::ssdo::Constants{.area = static_cast<int>(Area(area))},
-                       {code::ssdo::light({.environment = frame.sceneDescription().environment}),
-                        code::ssdo::directRadiance(direct->texture, gpu::Sampling::nearest)},
-                       "arriving radiance");
+    arriving = sampled(
+        frame, code::ssdo::Variant{.emission = emission != nullptr},
+        code::ssdo::Constants{.area = static_cast<int>(Area(area)),
+                              .environmentMap = environmentMapOf(frame)},
+        {EnvironmentBinding(frame), code::ssdo::light({.environment = frame.sceneDescription().environment}),
+         code::ssdo::directRadiance(direct->texture, gpu::Sampling::nearest)},
+        "arriving radiance");
   }
 };
 

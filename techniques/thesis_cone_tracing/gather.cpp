@@ -5,6 +5,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/ports/directional_radiance_grid.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "octree.h"
 
 namespace lumivox::thesis_cone_tracing {
@@ -103,8 +104,9 @@ class GatherPass : public Pass {
                                   .store = store.axis};
     if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
-    frame.dispatch(frame.program(variant),
-                   {gather::cones({.eyeWorld = frame.snapshot().camera.eye,
+    frame.dispatch(frame.program(variant, gather::Constants{.environmentMap = environmentMapOf(frame)}),
+                   {EnvironmentBinding(frame),
+                    gather::cones({.eyeWorld = frame.snapshot().camera.eye,
                                    .coneRatio = coneRatio,
                                    .environment = frame.sceneDescription().environment,
                                    .maxDistance = reach > 0.0f ? reach : store.length,

@@ -9,6 +9,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "lumivox/toolkit/room.h"
@@ -166,7 +167,8 @@ class TracePass : public Pass {
 
   /// The bindings that both orders read.
   shader::BindingSet sceneOf(PassContext& frame) const {
-    shader::BindingSet result{GBufferBinding(*gbuffer), method.binding(frame, *bits)};
+    shader::BindingSet result{GBufferBinding(*gbuffer), EnvironmentBinding(frame),
+                              method.binding(frame, *bits)};
     if (readsMap()) {
       result.add(ReflectiveShadowMapBinding(*map));
       result.add(projection.binding(bits->grid.voxelSize, asPublished, 0, map->lightCount));
@@ -190,12 +192,13 @@ class TracePass : public Pass {
     return variant;
   }
   template <class Constants>
-  Constants constantsOf() const {
+  Constants constantsOf(const PassContext& frame) const {
     return {.frontTest = projection.front(),
             .normalOfVoxels = normals == Normals::voxels,
             .pushes = stuck == Stuck::push,
             .roulette = roulette,
-            .printedTests = asPublished};
+            .printedTests = asPublished,
+            .environmentMap = environmentMapOf(frame)};
   }
 
   /// Light is added as a path meets it: three textures hold all paths, whatever the number of bounces. A
@@ -204,7 +207,7 @@ class TracePass : public Pass {
                      Path path, Outputs outputs) const {
     const shader::BoundProgram& program =
         frame.program(variantOf(trace::Variant{.arriving = outputs.arriving, .reflected = outputs.reflected}),
-                      constantsOf<trace::Constants>());
+                      constantsOf<trace::Constants>(frame));
     const gpu::TextureRef starts = frame.image("starts of rays"),
                           directions = frame.image("directions of rays"),
                           throughputs = frame.image("throughputs of paths");
@@ -245,7 +248,7 @@ class TracePass : public Pass {
                                     record::vertexReflection(reflection), record::firstWeights(weights)},
         recorded{scene, stored, record::vertexNormal(normal), record::vertexSpecular(specular),
                  record::vertexToViewer(toViewer)};
-    const shader::BoundProgram& forwards = frame.program(variant, constantsOf<record::Constants>());
+    const shader::BoundProgram& forwards = frame.program(variant, constantsOf<record::Constants>(frame));
     const shader::BoundProgram& backwards =
         frame.program(bring_back::Variant{.arriving = outputs.arriving, .reflected = outputs.reflected});
     for (int i = 0; i < samples; ++i, ++path.number) {

@@ -58,7 +58,10 @@ void addLights(std::vector<Row>& rows, const Session& session) {
   rows.push_back(heading("sky"));
   rows.push_back(ofPart(
       triple("sky", "radiance, W/(sr m2)", threeOf(edits.environment.value_or(session.scene().environment)),
-             0, kBrightest, "environment {}", "of the environment, from all directions"),
+             0, kBrightest, "environment {}",
+             session.scene().environmentMap && !edits.environment
+                 ? "mean of the map; a value here takes its place, the same from all directions"
+                 : "of the environment, from all directions"),
       "environment", edits.environment.has_value()));
 }
 

@@ -191,7 +191,10 @@ Scene edited(const Scene& scene, const SceneEdits& edits) {
       medium.albedo = found->second.albedo.value_or(medium.albedo);
       medium.anisotropy = found->second.anisotropy.value_or(medium.anisotropy);
     }
-  result.environment = edits.environment.value_or(result.environment);
+  if (edits.environment) {
+    result.environment = *edits.environment;
+    result.environmentMap = nullptr;
+  }
   if (edits.off.count("environment") != 0) result.environment = glm::vec3(0.0f);
   std::erase_if(result.lights,
                 [&](const Light& light) { return edits.off.count("light " + light.name) != 0; });

@@ -120,11 +120,9 @@ class SceneText {
     if (edits_.off.count("environment") != 0) {
       if (scene_.environment != glm::vec3(0.0f)) remove("environment", {});
     } else if (edits_.environment) {
-      const std::string statement = "radiance " + numbers(*edits_.environment);
-      if (find("environment", {}) == items_->end())
-        items_->push_back(itemOf("environment { " + statement + " }"));
-      else
-        replaceProperty(block("environment", {}), statement);
+      // As a whole: a constant radiance takes the place of a map's file.
+      std::erase_if(*items_, [](const dsl::Item& item) { return isCalled(item, "environment", {}); });
+      items_->push_back(itemOf("environment { radiance " + numbers(*edits_.environment) + " }"));
     }
   }
 
@@ -233,7 +231,12 @@ bool looksAlike(const Scene& a, const Material& one, const Scene& b, const Mater
 
 /// The first visible difference of two scenes, in words; empty if there is none.
 std::string differenceOf(const Scene& a, const Scene& b) {
-  if (a.environment != b.environment) return "the environment";
+  const auto sameMap = [](const std::shared_ptr<const EnvironmentMap>& x,
+                          const std::shared_ptr<const EnvironmentMap>& y) {
+    return x == y || (x != nullptr && y != nullptr && *x == *y);
+  };
+  if (a.environment != b.environment || !sameMap(a.environmentMap, b.environmentMap))
+    return "the environment";
   if (a.lights.size() != b.lights.size()) return "the lights";
   for (std::size_t i = 0; i < a.lights.size(); ++i)
     if (a.lights[i].power != b.lights[i].power) return "light " + a.lights[i].name;

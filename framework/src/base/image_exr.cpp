@@ -157,7 +157,8 @@ std::uint64_t mostExpansion(Imf::Compression compression) {
 }
 
 /// Refuses bad parts before memory is allocated for the pixels.
-void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t fileBytes) {
+void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t fileBytes,
+               std::uint64_t mostPixels) {
   const Imf::Header& header = file.header(part);
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
     throw Error(fmt::format(
@@ -190,6 +191,9 @@ void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t file
     throw Error(fmt::format("claims {} x {} pixels with {} channels, too many for a file of {}", width,
                             height, channelCount, formatBytes(fileBytes)));
   }
+  if (pixels > mostPixels)
+    throw Error(fmt::format("has {} x {} pixels, {} as floats; expected at most {} pixels", width, height,
+                            formatBytes(pixels * channelCount * sizeof(float)), mostPixels));
   requireMemory(pixels * channelCount * sizeof(float),
                 fmt::format("an EXR of {} x {} pixels with {} channels", width, height, channelCount));
 }
@@ -341,7 +345,7 @@ void requireAttributesWithin(std::string_view bytes) {
 
 }  // namespace
 
-LayeredImage readExr(const std::filesystem::path& path) {
+LayeredImage readExr(const std::filesystem::path& path, std::uint64_t mostPixels) {
   const std::string bytes = readFile(path, kLargestExrFile);
   LayeredImage result;
   try {
@@ -350,7 +354,7 @@ LayeredImage readExr(const std::filesystem::path& path) {
     constexpr bool kRebuildTable = false;  // a file without its chunk table is incomplete
     Imf::MultiPartInputFile file(stream, kThreads, kRebuildTable);
     for (int part = 0; part < file.parts(); ++part) {
-      checkPart(file, part, bytes.size());
+      checkPart(file, part, bytes.size(), mostPixels);
       if (file.header(part).dataWindow() != file.header(0).dataWindow()) {
         throw Error("contains parts of different sizes; expected one size");
       }

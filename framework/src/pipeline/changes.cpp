@@ -58,7 +58,11 @@ Reads whatChanged(const Scene& before, const Scene& after) {
                        [](const Material& material) { return material.emissive(); });
   };
   if ((geometry || materials) && (emits(before) || emits(after))) changed = changed | Reads::lights;
-  if (before.environment != after.environment) changed = changed | Reads::environment;
+  const auto hashOf = [](const Scene& scene) {
+    return scene.environmentMap ? scene.environmentMap->hash : ContentHash{};
+  };
+  if (before.environment != after.environment || hashOf(before) != hashOf(after))
+    changed = changed | Reads::environment;
   if (before.media != after.media) changed = changed | Reads::media;
   const auto same = [](const std::shared_ptr<const Capture>& a, const std::shared_ptr<const Capture>& b) {
     return a->hash == b->hash;

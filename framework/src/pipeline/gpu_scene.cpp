@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstring>
 
 #include "gpu/memory.h"
 #include "lumivox/scene/models.h"
+#include "scene/octahedral_environment.h"
 
 namespace lumivox {
 namespace {
@@ -71,6 +74,48 @@ std::shared_ptr<const gpu::Texture> whiteTextureOf(gpu::Device& device) {
   });
 }
 
+std::vector<glm::vec4> paddedOf(const std::vector<glm::vec3>& colours) {
+  std::vector<glm::vec4> values;
+  values.reserve(colours.size());
+  for (const glm::vec3& colour : colours) values.emplace_back(colour, 1.0f);
+  return values;
+}
+
+std::shared_ptr<const gpu::Buffer> environmentLevelsOf(gpu::Device& device, const EnvironmentMap& map) {
+  return gpu::sharedResource<gpu::Buffer>(
+      device, Hasher().add("environment levels").add(map.hash.high).add(map.hash.low).finish(), [&] {
+        const OctahedralEnvironment levels(map);
+        std::vector<glm::vec4> values = paddedOf(levels.radiance());
+        const std::array<std::int32_t, 4> header{levels.side(), levels.levels(), 0, 0};
+        glm::vec4 first;
+        std::memcpy(&first, header.data(), sizeof(first));
+        values.insert(values.begin(), first);
+        return bufferOf(device, values, "environment by direction");
+      });
+}
+
+std::shared_ptr<const gpu::Texture> environmentTexelsOf(gpu::Device& device, const EnvironmentMap& map) {
+  return gpu::sharedResource<gpu::Texture>(
+      device, Hasher().add("environment texels").add(map.hash.high).add(map.hash.low).finish(), [&] {
+        auto texture = std::make_unique<gpu::Texture>(
+            device,
+            gpu::TextureDescription{gpu::TextureKind::d2, gpu::Format::rgba32f, map.width, map.height},
+            "environment texels");
+        const std::vector<glm::vec4> texels = paddedOf(map.radiance);
+        texture->upload(0, std::as_bytes(std::span(texels)));
+        return texture;
+      });
+}
+
+/// A map of one texel.
+std::shared_ptr<const EnvironmentMap> constantMap(const glm::vec3& radiance) {
+  auto map = std::make_shared<EnvironmentMap>();
+  map->width = map->height = 1;
+  map->radiance = {radiance};
+  map->finish();
+  return map;
+}
+
 bool deforms(const Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(),
                      [](const Object& object) { return object.sequence.has_value(); });
@@ -87,10 +132,16 @@ struct GpuScene::State {
   std::vector<std::shared_ptr<const gpu::Texture>> textures;
   std::vector<SceneDraw> draws;
   std::vector<std::uint32_t> firstVertices;  ///< of each object
+  gpu::Device* device = nullptr;
+  std::shared_ptr<const EnvironmentMap> environmentMap;
+  std::shared_ptr<const gpu::Buffer> environmentLevels;  ///< null until it is asked for
+  std::shared_ptr<const gpu::Texture> environmentTexels;
 };
 
 GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{}) {
   State& s = *state_;
+  s.device = &device;
+  s.environmentMap = scene.environmentMap ? scene.environmentMap : constantMap(scene.environment);
   static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::vec2) == 8);
   if (deforms(scene)) {
     s.ownPositions = bufferOf(device, scene.positions, "scene positions");
@@ -164,6 +215,16 @@ const gpu::Buffer& GpuScene::objects() const {
 }
 const gpu::Texture& GpuScene::whiteTexture() const {
   return *state_->white;
+}
+const gpu::Buffer& GpuScene::environmentLevels() {
+  State& s = *state_;
+  if (!s.environmentLevels) s.environmentLevels = environmentLevelsOf(*s.device, *s.environmentMap);
+  return *s.environmentLevels;
+}
+const gpu::Texture& GpuScene::environmentTexels() {
+  State& s = *state_;
+  if (!s.environmentTexels) s.environmentTexels = environmentTexelsOf(*s.device, *s.environmentMap);
+  return *s.environmentTexels;
 }
 const std::vector<SceneDraw>& GpuScene::draws() const {
   return state_->draws;

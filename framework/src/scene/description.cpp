@@ -150,7 +150,7 @@ class Reader : private BlockReader {
     if (block.word == "material") readMaterial(checkedBlock);
     if (block.word == "mesh") readMesh(checkedBlock);
     if (block.word == "light") readLight(checkedBlock);
-    if (block.word == "environment") result_.environment = vector(checkedBlock, "radiance", glm::dvec3(0));
+    if (block.word == "environment") readEnvironment(checkedBlock);
     if (block.word == "medium") readMedium(checkedBlock);
     if (block.word == "animate") readAnimation(checkedBlock);
     if (block.word != "capture") return;
@@ -395,6 +395,28 @@ class Reader : private BlockReader {
       }
     }
     result_.lights.push_back(std::move(light));
+  }
+
+  void readEnvironment(const CheckedBlock& block) {
+    result_.environment = vector(block, "radiance", glm::dvec3(0));
+    EnvironmentText& map = result_.environmentMap;
+    map.file = placed(block, "file");
+    if (map.file) requireFormat(*map.file, "environment", kEnvironmentFormats);
+    const auto length = static_cast<int>(block.block().word.size());
+    if (block.has("radiance") == block.has("file"))
+      report(
+          block.block().place, length,
+          map.file ? "an environment of both a constant radiance and a file" : "an environment without light",
+          "radiance R G B, or file \"NAME.exr\"");
+    for (const char* word : {"rotate", "scale"}) {
+      const Property* property = block.find(word);
+      if (property != nullptr && !map.file)
+        report(*property, fmt::format("'{}' without a file", word), "file \"NAME.exr\"");
+    }
+    map.scale = block.number("scale", 1.0);
+    if (block.has("rotate"))
+      map.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), block.numbers("rotate", {}).at(3),
+                                            direction(block, "rotate", {0, 1, 0})));
   }
 
   void readMedium(const CheckedBlock& block) {

@@ -85,6 +85,13 @@ struct AnimationText {
   bool hasPivot = false;
 };
 
+/// An environment map; without a file the environment is constant.
+struct EnvironmentText {
+  std::optional<PlacedText> file;
+  glm::dmat3 rotation{1.0};
+  double scale = 1.0;
+};
+
 struct SceneDescription {
   std::string name;
   std::vector<Camera> cameras;
@@ -93,6 +100,7 @@ struct SceneDescription {
   std::vector<AreaLightText> areaLights;
   std::vector<Light> lights;
   glm::vec3 environment{0.0f};
+  EnvironmentText environmentMap;
   std::vector<MediumText> media;
   std::vector<AnimationText> animations;
   std::vector<CaptureText> captures;
@@ -108,7 +116,7 @@ inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
 inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
 inline const std::vector<std::string> kVolumeFormats{".vdb"};
 inline const std::vector<std::string> kSensorFormats{".sens"}, kFloatImageFormats{".exr"},
-    kSceneFormats{".scene"};
+    kSceneFormats{".scene"}, kEnvironmentFormats{".exr", ".hdr"};
 bool hasFormat(const std::string& name, const std::vector<std::string>& formats);
 
 /// Whether `name` matches a pattern, in which * stands for any letters and ? for one.

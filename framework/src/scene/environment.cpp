@@ -17,6 +17,16 @@ std::size_t interval(float value, int count) {
 
 }  // namespace
 
+void EnvironmentMap::finish() {
+  brightest = glm::vec3(0.0f);
+  for (const glm::vec3& texel : radiance) brightest = glm::max(brightest, texel);
+  Hasher hasher;
+  hasher.add(width).add(height).add(radiance);
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) hasher.add(toMap[column][row]);
+  hash = hasher.finish();
+}
+
 std::size_t EnvironmentMap::texelTowards(const glm::vec3& direction) const {
   const glm::vec3 d = toMap * direction;
   const float u = 0.5f + std::atan2(d.x, -d.z) * static_cast<float>(0.5 / kPi);
@@ -26,13 +36,24 @@ std::size_t EnvironmentMap::texelTowards(const glm::vec3& direction) const {
 
 glm::vec3 EnvironmentMap::direction(float column, float row) const {
   const double azimuth = 2.0 * kPi * (column / width - 0.5), polar = kPi * row / height;
-  const glm::dvec3 inMap(std::sin(polar) * std::sin(azimuth), std::cos(polar),
-                         -std::sin(polar) * std::cos(azimuth));
-  return glm::vec3(glm::transpose(glm::dmat3(toMap)) * inMap);
+  return glm::transpose(toMap) * glm::vec3(std::sin(polar) * std::sin(azimuth), std::cos(polar),
+                                           -std::sin(polar) * std::cos(azimuth));
+}
+
+glm::vec3 EnvironmentMap::directionWithin(int column, int row, float u, float v) const {
+  // Equal steps of height on the unit sphere have equal areas. From the half-angle's sine, so that texels at
+  // a pole lose no digits: 1 - cos = 2 sin^2.
+  const double top = std::sin(0.5 * kPi * row / height), bottom = std::sin(0.5 * kPi * (row + 1) / height);
+  const double halfSquared = top * top + v * (bottom * bottom - top * top);
+  const double up = 1.0 - 2.0 * halfSquared, side = 2.0 * std::sqrt(halfSquared * (1.0 - halfSquared));
+  const double azimuth = 2.0 * kPi * ((column + static_cast<double>(u)) / width - 0.5);
+  return glm::transpose(toMap) * glm::vec3(side * std::sin(azimuth), up, -side * std::cos(azimuth));
 }
 
 double EnvironmentMap::solidAngle(int row) const {
-  return 2.0 * kPi / width * (std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height));
+  // cos a - cos b as a product, which keeps its digits at the poles.
+  return 2.0 * kPi / width * 2.0 * std::sin(0.5 * kPi * (2 * row + 1) / height) *
+         std::sin(0.5 * kPi / height);
 }
 
 glm::vec3 EnvironmentMap::mean() const {

@@ -18,6 +18,7 @@
 #include "scene/assets.h"
 #include "scene/capture_load.h"
 #include "scene/description.h"
+#include "scene/environment_file.h"
 #include "scene/obj_model.h"
 #include "scene/texture.h"
 #include "scene/volume_file.h"
@@ -87,6 +88,8 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
     if (capture.file) require(*capture.file, capture.file->text, "capture", kSensorFormats);
     findMissingFrames(document, capture, assets, purpose == Purpose::checking, findings);
   }
+  if (const auto& file = description.environmentMap.file)
+    require(*file, file->text, "environment", kEnvironmentFormats);
   for (const MediumText& medium : description.media) {
     if (medium.file) require(*medium.file, medium.file->text, "volume", kVolumeFormats);
   }
@@ -116,6 +119,7 @@ class Loader {
     scene_.cameras = description_.cameras;
     scene_.lights = description_.lights;
     scene_.environment = description_.environment;
+    if (const auto& file = description_.environmentMap.file) attempt(file, [&] { addEnvironment(*file); });
     for (const MediumText& medium : description_.media) attempt(medium.file, [&] { addMedium(medium); });
     for (const MeshText& mesh : description_.meshes) {
       if (!mesh.isSound && !namesOneFile(mesh)) continue;
@@ -208,6 +212,16 @@ class Loader {
     static const MaterialText missing;
     const auto found = textMaterials_.find(name);
     return found == textMaterials_.end() && !isWhole_ ? &missing : textMaterials_.at(name);
+  }
+
+  void addEnvironment(const PlacedText& file) {
+    auto map = std::make_shared<EnvironmentMap>(readEnvironmentFile(
+        assets_.found(file.text, "the environment map"), description_.environmentMap, options_.strict));
+    hasher_.add(map->hash.high).add(map->hash.low);
+    scene_.environment = map->radiance.front();
+    if (isConstant(*map)) return;
+    scene_.environment = map->mean();
+    scene_.environmentMap = std::move(map);
   }
 
   void addMedium(const MediumText& text) {

@@ -312,8 +312,17 @@ BlockSpecification capture() {
 std::vector<BlockSpecification> makeSpecifications() {
   BlockSpecification environment = block(
       "environment", HeaderUse::none,
-      "constant radiance from all directions, seen by rays that miss everything",
-      {Row("radiance", PropertyType::oneOrThree, "radiance in W/(sr m^2)").upTo(kMostLight).required()});
+      "light from beyond the scene, seen by rays that miss everything: constant, or an image of the sphere",
+      {Row("radiance", PropertyType::oneOrThree,
+           "constant radiance from all directions, W/(sr m^2); instead of a file")
+           .upTo(kMostLight),
+       Row("file", PropertyType::text,
+           "OpenEXR or Radiance image in latitude and longitude, linear radiance in W/(sr m^2): the upper row is +Y, the middle column -Z, and +X lies to its right"),
+       Row("rotate", PropertyType::axisAndNumber, "turn of the map about an axis", dsl::kAngle)
+           .within(kLargestTurn * kDegree),
+       Row("scale", PropertyType::number, "factor of the map's radiance")
+           .between(1e-12, kMostLight)
+           .byDefault("1")});
   environment.repeatable = false;
   BlockSpecification animate =
       block("animate", HeaderUse::required,

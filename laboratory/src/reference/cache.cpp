@@ -186,6 +186,7 @@ ContentHash contentOf(const Scene& scene) {
   hasher.add(std::uint64_t{scene.cameras.size()});
   for (const Camera& camera : scene.cameras) add(hasher, camera);
   add(hasher, scene.environment);
+  if (scene.environmentMap) hasher.add(scene.environmentMap->hash.high).add(scene.environmentMap->hash.low);
   for (const Medium& medium : scene.media) add(hasher, medium);
   return hasher.finish();
 }
@@ -195,6 +196,7 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   Hasher hasher;
   hasher.add("lumivox reference").add(kTracerVersion);
   if (!scene.media.empty()) hasher.add(kMediaVersion);
+  if (SceneTraits::of(scene).environment) hasher.add("environment").add(kEnvironmentVersion);
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
   for (const auto& capture : scene.captures)

@@ -15,6 +15,8 @@ namespace lumivox::reference {
 inline constexpr int kTracerVersion = 4;
 /// The same for changes that affect only images of scenes with media.
 inline constexpr int kMediaVersion = 2;
+/// The same for scenes with an environment.
+inline constexpr int kEnvironmentVersion = 1;
 
 /// Scene::hash, or for a scene made by code the hash of everything that the path tracer reads.
 ContentHash contentOf(const Scene& scene);

@@ -31,6 +31,8 @@ struct PathSample {
   glm::vec3 oneBounceDiffuse{0.0f}, oneBounceGlossy{0.0f};
   glm::vec3 indirectDiffuse{0.0f}, indirectGlossy{0.0f};
   float unoccluded = 1.0f;
+  /// Part of both of the above: light of the environment that no other surface reflected on its way.
+  glm::vec3 environmentDiffuse{0.0f}, environmentGlossy{0.0f};
   bool real = false;  ///< the first surface is of the scene that a capture stands for
   LateLight lateLight;
 
@@ -97,7 +99,7 @@ struct Integrator {
   const RayScene& scene;
   const LightSampler& lights;
   const Media& media;
-  glm::vec3 environment;
+  const EnvironmentLight& environment;
   int bounces;
   bool roulette;
   float occlusionDistance;  ///< m; not positive: no occlusion ray
@@ -117,6 +119,7 @@ struct Integrator {
   struct NextEvent {
     glm::vec3 diffuse{0.0f};  ///< W/(sr m^2), to be multiplied by the albedo
     glm::vec3 glossy{0.0f};   ///< reflected radiance
+    bool ofEnvironment = false;
   };
   template <bool ThroughMedia, class Rays>
   NextEvent nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const;
@@ -132,12 +135,20 @@ struct Integrator {
     return open ? 1.0f : 0.0f;
   }
 
+  /// Light of the environment met by a ray in a direction that was sampled with this density: its half of
+  /// multiple importance sampling.
+  glm::vec3 missed(const glm::vec3& direction, float density) const {
+    const glm::vec3 radiance = environment.towards(direction);
+    return powerHeuristic(lights.environmentDensity(radiance) / density) * radiance;
+  }
+
   /// Light that arrives at the start of a walk. `bounces`: reflections and scatterings on its way, a miss
   /// counting as one. `scattered`: whether a medium scattered it.
   struct Arrival {
     glm::vec3 radiance;
     int bounces;
     bool scattered;
+    bool ofEnvironment = false;  ///< it comes straight from there
   };
   /// Follows light that arrives at a point through media, from a direction sampled with the given density.
   /// Calls arrive(Arrival) for each contribution.
@@ -146,9 +157,13 @@ struct Integrator {
             Arrive&& arrive) const;
   /// Light of one chosen emitter, scattered once at a collision against `direction`, times the weight of the
   /// collision.
+  struct Scattering {
+    glm::vec3 radiance{0.0f};
+    bool ofEnvironment = false;
+  };
   template <class Rays>
-  glm::vec3 nextScattering(Rays& rays, RandomStream& random, const Collision& collision,
-                           const glm::vec3& direction) const;
+  Scattering nextScattering(Rays& rays, RandomStream& random, const Collision& collision,
+                            const glm::vec3& direction) const;
   template <class Rays>
   void traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit, const glm::vec3& direction,
                      PathSample& result, BounceSums* sums) const;
@@ -175,15 +190,17 @@ Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, co
   const Reflectance reflectance = reflectanceTowards(surface, light.direction);
   if (reflectance.density == 0.0f) return {};
   if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return {};
-  // Reflected rays meet only emissive triangles; for other lights the ratio is 0 and the weight 1.
+  // Reflected rays meet emissive triangles and the environment; for other lights the ratio is 0, the
+  // weight 1.
   const float weight = powerHeuristic(reflectance.density * light.inverseDensity);
   if constexpr (ThroughMedia) {
     const glm::vec3 irradiance =
         weight * light.irradiance *
         media.transmittance(surface.position, light.direction, light.reach(), random);
-    return {reflectance.lambert * irradiance, reflectance.glossy * irradiance};
+    return {reflectance.lambert * irradiance, reflectance.glossy * irradiance, light.ofEnvironment};
   }
-  return {weight * reflectance.lambert * light.irradiance, weight * reflectance.glossy * light.irradiance};
+  return {weight * reflectance.lambert * light.irradiance, weight * reflectance.glossy * light.irradiance,
+          light.ofEnvironment};
 }
 
 template <class Rays>
@@ -192,7 +209,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
   PathSample result;
   Hit hit;
   if (!rays.closestHit(origin, direction, hit)) {
-    result.direct = environment;
+    result.direct = environment.towards(direction);
     return result;
   }
   result.real = scene.isReal(hit);
@@ -206,6 +223,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
   // surface over exactly one and over any number of bounces.
   glm::vec3 firstDiffuse(0.0f), firstGlossy(0.0f), throughput(1.0f);
   glm::vec3 arrivingOnce(0.0f), arriving(0.0f);
+  glm::vec3 metFirst(0.0f);  // the environment beside the first surface
   LateLight arrivingLate;
   const auto arrive = [&](const glm::vec3& radiance, int bounce) {
     arriving += throughput * radiance;
@@ -216,17 +234,27 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
                 glm::vec3(0.0f));
   };
   for (int depth = 0;; ++depth) {
+    const bool last = depth == bounces;
     const NextEvent event = lights.empty() ? NextEvent{} : nextEvent<false>(rays, random, surface);
     surface.readTexture();
-    const glm::vec3 reflected = event.diffuse * surface.diffuse + event.glossy;
-    if (depth == 0) {
+    const glm::vec3 diffuse = event.diffuse * surface.diffuse, reflected = diffuse + event.glossy;
+    if (event.ofEnvironment) {
+      if (last) {
+        // It would be one bounce too many.
+      } else if (depth > 0) {
+        arrive(reflected, depth + 1);
+      } else {
+        result.environmentDiffuse = diffuse;
+        result.environmentGlossy = event.glossy;
+        if (sums != nullptr) sums->add(1, diffuse, event.glossy, glm::vec3(0.0f));
+      }
+    } else if (depth == 0) {
       result.direct += reflected;
     } else {
       arrive(reflected, depth);
     }
     // Behind the last surface a ray can only meet emissive triangles: the other half of multiple importance
     // sampling.
-    const bool last = depth == bounces;
     if (last && !lights.hasEmitters()) break;
 
     const ReflectionSample reflection = sampleReflection(surface, random);
@@ -240,7 +268,10 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     }
 
     if (!rays.closestHit(surface.position, reflection.direction, hit)) {
-      if (!last) arrive(environment, depth + 1);
+      if (last) break;
+      const glm::vec3 met = missed(reflection.direction, reflection.density);
+      if (depth == 0) metFirst = met;
+      arrive(met, depth + 1);
       break;
     }
     const TriangleRecord& triangle = scene.triangles[hit.triangle];
@@ -258,11 +289,14 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     if (last) break;
     scene.surfaceAt(hit, reflection.direction, surface);
   }
-  result.oneBounceDiffuse = firstDiffuse * arrivingOnce;
-  result.oneBounceGlossy = firstGlossy * arrivingOnce;
-  result.indirectDiffuse = firstDiffuse * arriving;
-  result.indirectGlossy = firstGlossy * arriving;
+  result.oneBounceDiffuse = result.environmentDiffuse + firstDiffuse * arrivingOnce;
+  result.oneBounceGlossy = result.environmentGlossy + firstGlossy * arrivingOnce;
+  result.indirectDiffuse = result.environmentDiffuse + firstDiffuse * arriving;
+  result.indirectGlossy = result.environmentGlossy + firstGlossy * arriving;
   result.lateLight = arrivingLate.times(firstDiffuse + firstGlossy);
+  result.lateLight.add(result.environmentDiffuse + result.environmentGlossy, 1, bounces);
+  result.environmentDiffuse += firstDiffuse * metFirst;
+  result.environmentGlossy += firstGlossy * metFirst;
   return result;
 }
 

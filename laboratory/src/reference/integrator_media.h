@@ -16,17 +16,19 @@ inline glm::vec3 scatter(const Collision& collision, const glm::vec3& direction,
 }
 
 template <class Rays>
-glm::vec3 Integrator::nextScattering(Rays& rays, RandomStream& random, const Collision& collision,
-                                     const glm::vec3& direction) const {
-  if (lights.empty()) return glm::vec3(0.0f);
+Integrator::Scattering Integrator::nextScattering(Rays& rays, RandomStream& random,
+                                                  const Collision& collision,
+                                                  const glm::vec3& direction) const {
+  if (lights.empty()) return {};
   const LightSample light = lights.sample(scene, collision.position, random);
-  if (!light.shines) return glm::vec3(0.0f);
-  if (rays.occluded(collision.position, light.shadowDirection, light.shadowReach)) return glm::vec3(0.0f);
+  if (!light.shines) return {};
+  if (rays.occluded(collision.position, light.shadowDirection, light.shadowReach)) return {};
   // The angle lies between the direction of the light and that to the viewer.
   const float density = phase(collision.anisotropy, glm::dot(light.direction, direction));
   const float weight = density * powerHeuristic(density * light.inverseDensity);
-  return weight * light.irradiance *
-         media.transmittance(collision.position, light.direction, light.reach(), random);
+  return {weight * light.irradiance *
+              media.transmittance(collision.position, light.direction, light.reach(), random),
+          light.ofEnvironment};
 }
 
 template <class Rays, class Arrive>
@@ -37,6 +39,11 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
   Hit hit;
   Surface surface;
   Collision collision;
+  // The light of the environment counts as one bounce more than that of the lights.
+  const auto arriveUnlessLate = [&](const glm::vec3& radiance, int bounce, bool ofEnvironment) {
+    if (ofEnvironment && bounce == bounces) return;
+    arrive(Arrival{throughput * radiance, bounce + (ofEnvironment ? 1 : 0), scattered});
+  };
   for (int depth = 0;; ++depth) {
     // Behind the last bounce a ray can only meet emissive triangles: the other half of multiple importance
     // sampling.
@@ -47,14 +54,15 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
     if (media.collide(origin, direction, reach, random, throughput, collision)) {
       if (last) return;
       scattered = true;
-      arrive(Arrival{throughput * nextScattering(rays, random, collision, direction), depth + 1, scattered});
+      const Scattering light = nextScattering(rays, random, collision, direction);
+      arriveUnlessLate(light.radiance, depth + 1, light.ofEnvironment);
       direction = scatter(collision, direction, random, density);
       origin = collision.position;
       if (!survives(random, throughput)) return;
       continue;
     }
     if (!met) {
-      if (!last) arrive(Arrival{throughput * environment, depth + 1, scattered});
+      if (!last) arrive(Arrival{throughput * missed(direction, density), depth + 1, scattered, depth == 0});
       return;
     }
     const TriangleRecord& triangle = scene.triangles[hit.triangle];
@@ -68,7 +76,7 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
     scene.surfaceAt(hit, direction, surface);
     const NextEvent event = lights.empty() ? NextEvent{} : nextEvent<true>(rays, random, surface);
     surface.readTexture();
-    arrive(Arrival{throughput * (event.diffuse * surface.diffuse + event.glossy), depth + 1, scattered});
+    arriveUnlessLate(event.diffuse * surface.diffuse + event.glossy, depth + 1, event.ofEnvironment);
     const ReflectionSample reflection = sampleReflection(surface, random);
     if (reflection.density == 0.0f) return;
     throughput *= reflection.diffuse + reflection.glossy;
@@ -89,7 +97,24 @@ void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit,
   result.unoccluded = unoccludedAt(rays, random, surface);
   const NextEvent event = lights.empty() ? NextEvent{} : nextEvent<true>(rays, random, surface);
   surface.readTexture();
-  result.direct += event.diffuse * surface.diffuse + event.glossy;
+  const auto addIndirect = [&](const glm::vec3& diffuse, const glm::vec3& glossy, const Arrival& light) {
+    if (sums != nullptr) sums->add(light.bounces, diffuse, glossy, glm::vec3(0.0f));
+    result.indirectDiffuse += diffuse;
+    result.indirectGlossy += glossy;
+    result.lateLight.add(diffuse + glossy, light.bounces, bounces);
+    if (light.bounces > 1 || light.scattered) return;
+    result.oneBounceDiffuse += diffuse;
+    result.oneBounceGlossy += glossy;
+    if (!light.ofEnvironment) return;
+    result.environmentDiffuse += diffuse;
+    result.environmentGlossy += glossy;
+  };
+  const glm::vec3 lit = event.diffuse * surface.diffuse;
+  if (!event.ofEnvironment) {
+    result.direct += lit + event.glossy;
+  } else if (bounces > 0) {
+    addIndirect(lit, event.glossy, Arrival{glm::vec3(0.0f), 1, false, true});
+  }
   const ReflectionSample reflection = sampleReflection(surface, random);
   if (reflection.density == 0.0f) return;
   walk(rays, random, surface.position, reflection.direction, reflection.density, [&](const Arrival& light) {
@@ -99,13 +124,7 @@ void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit,
       result.direct += diffuse + glossy;
       return;
     }
-    if (sums != nullptr) sums->add(light.bounces, diffuse, glossy, glm::vec3(0.0f));
-    result.indirectDiffuse += diffuse;
-    result.indirectGlossy += glossy;
-    result.lateLight.add(diffuse + glossy, light.bounces, bounces);
-    if (light.bounces > 1 || light.scattered) return;
-    result.oneBounceDiffuse += diffuse;
-    result.oneBounceGlossy += glossy;
+    addIndirect(diffuse, glossy, light);
   });
 }
 
@@ -116,14 +135,25 @@ void Integrator::traceScattered(Rays& rays, RandomStream& random, const glm::vec
   glm::vec3 weight(1.0f);
   Collision collision;
   if (!media.collide(origin, direction, reach, random, weight, collision)) return;
-  result.scatteredSingle = weight * nextScattering(rays, random, collision, direction);
+  const auto addMultiple = [&](const glm::vec3& radiance, int bounce) {
+    if (sums != nullptr) sums->add(bounce, glm::vec3(0.0f), glm::vec3(0.0f), radiance);
+    result.scatteredMultiple += radiance;
+    result.lateLight.add(radiance, bounce, bounces);
+  };
+  const Scattering event = nextScattering(rays, random, collision, direction);
+  if (!event.ofEnvironment) {
+    result.scatteredSingle = weight * event.radiance;
+  } else if (bounces > 0) {
+    addMultiple(weight * event.radiance, 1);
+  }
   float density;
   const glm::vec3 onwards = scatter(collision, direction, random, density);
   walk(rays, random, collision.position, onwards, density, [&](const Arrival& light) {
-    if (sums != nullptr && light.bounces > 0)
-      sums->add(light.bounces, glm::vec3(0.0f), glm::vec3(0.0f), weight * light.radiance);
-    (light.bounces == 0 ? result.scatteredSingle : result.scatteredMultiple) += weight * light.radiance;
-    result.lateLight.add(weight * light.radiance, light.bounces, bounces);
+    if (light.bounces > 0) {
+      addMultiple(weight * light.radiance, light.bounces);
+    } else {
+      result.scatteredSingle += weight * light.radiance;
+    }
   });
 }
 
@@ -142,7 +172,7 @@ MediaPathSample Integrator::traceThroughMedia(Rays& rays, RandomStream& random, 
     result.lateLight.middle += behind.middle;
     result.lateLight.late += behind.late;
   } else {
-    result.surfaces.direct = environment;
+    result.surfaces.direct = environment.towards(direction);
   }
   return result;
 }

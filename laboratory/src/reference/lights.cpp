@@ -10,10 +10,6 @@ namespace {
 /// does not hide it. The gap exceeds the rounding of single precision.
 constexpr float kReachOfPoint = 1.0f - 1e-5f;
 
-double meanOf(const glm::vec3& rgb) {
-  return (std::max(0.0, double(rgb.x)) + std::max(0.0, double(rgb.y)) + std::max(0.0, double(rgb.z))) / 3.0;
-}
-
 /// Flux of a light without extent, W: the weight of choosing it, not a radiometric result.
 double fluxOf(const LightState& light, double sceneRadius) {
   constexpr double pi = std::numbers::pi;
@@ -30,11 +26,11 @@ double fluxOf(const LightState& light, double sceneRadius) {
 
 }  // namespace
 
-AliasTable::AliasTable(const std::vector<double>& weights) {
+AliasTable::AliasTable(std::vector<double> weights) {
   const std::size_t count = weights.size();
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
-  std::vector<double> scaled(count);
+  std::vector<double>& scaled = weights;
   std::vector<std::uint32_t> small, large;
   slots_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -62,17 +58,24 @@ float LightSampler::PreparedLight::falloffTowards(float cosine) const {
   return t * t * (3.0f - 2.0f * t);
 }
 
-LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
+LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot,
+                           const EnvironmentLight& environment)
+    : environment_(environment) {
   for (const LightState& light : snapshot.lights) {
     lights_.push_back({light, std::cos(light.innerAngle), std::cos(light.outerAngle)});
   }
-  const double radius = 0.5 * glm::length(glm::dvec3(snapshot.bounds.high) - glm::dvec3(snapshot.bounds.low));
+  const double radius =
+      std::max(0.5 * glm::length(glm::dvec3(snapshot.bounds.high) - glm::dvec3(snapshot.bounds.low)), 1e-30);
   std::vector<double> flux;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const double value = fluxOf(lights_[i].state, std::max(radius, 1e-30));
+    const double value = fluxOf(lights_[i].state, radius);
     if (value <= 0.0) continue;
-    choices_.push_back({false, static_cast<std::uint32_t>(i), 0.0f});
+    choices_.push_back({Choice::Kind::point, static_cast<std::uint32_t>(i), 0.0f});
     flux.push_back(value);
+  }
+  if (environment.sampled()) {  // each direction lights the disc that the scene shows to it
+    choices_.push_back({Choice::Kind::environment, 0, 0.0f});
+    flux.push_back(environment.total() * std::numbers::pi * radius * radius);
   }
   const std::size_t firstTriangle = choices_.size();
   double emittedFlux = 0.0;
@@ -82,7 +85,7 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
     const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
     const double value = meanOf(scene.materials[triangle.material].emission) * std::numbers::pi * area;
     if (value <= 0.0) continue;
-    choices_.push_back({true, static_cast<std::uint32_t>(i), 0.0f});
+    choices_.push_back({Choice::Kind::triangle, static_cast<std::uint32_t>(i), 0.0f});
     flux.push_back(value);
     emittedFlux += value;
   }
@@ -95,11 +98,14 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
   for (const double value : flux) totalFlux += value;
   const double share = 0.5 / static_cast<double>(firstTriangle + (emitters_ > 0 ? 1 : 0));
   for (std::size_t i = 0; i < choices_.size(); ++i) {
-    const double even = choices_[i].triangle ? share * flux[i] / emittedFlux : share;
+    const bool isTriangle = choices_[i].kind == Choice::Kind::triangle;
+    const double even = isTriangle ? share * flux[i] / emittedFlux : share;
     const double probability = 0.5 * flux[i] / totalFlux + even;
     flux[i] = probability;
     choices_[i].inverseProbability = static_cast<float>(1.0 / probability);
-    if (choices_[i].triangle) {
+    if (choices_[i].kind == Choice::Kind::environment)
+      environmentProbability_ = static_cast<float>(probability);
+    if (isTriangle) {
       TriangleRecord& triangle = scene.triangles[choices_[i].index];
       const double area =
           0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
@@ -117,7 +123,27 @@ LightSample LightSampler::sample(const RayScene& scene, const glm::vec3& positio
     chosen = choice_.pick(slotBits, choiceBits);
   }
   const Choice& choice = choices_[chosen];
-  return choice.triangle ? sampleTriangle(scene, position, choice, random) : sampleLight(choice, position);
+  switch (choice.kind) {
+    case Choice::Kind::triangle:
+      return sampleTriangle(scene, position, choice, random);
+    case Choice::Kind::environment:
+      return sampleEnvironment(random);
+    case Choice::Kind::point:
+      break;
+  }
+  return sampleLight(choice, position);
+}
+
+LightSample LightSampler::sampleEnvironment(RandomStream& random) const {
+  const EnvironmentLight::Sample sample = environment_.sample(random);
+  LightSample result;
+  result.direction = result.shadowDirection = sample.direction;
+  result.shadowReach = std::numeric_limits<float>::infinity();
+  result.inverseDensity = 1.0f / (environmentProbability_ * sample.density);
+  result.irradiance = result.inverseDensity * sample.radiance;
+  result.ofEnvironment = true;
+  result.shines = true;
+  return result;
 }
 
 LightSample LightSampler::sampleTriangle(const RayScene& scene, const glm::vec3& position,

@@ -57,17 +57,19 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
 
 Tracer::Tracer(const Scene& scene, const ResolvedOptions& resolved)
     : rays(scene, resolved.snapshot),
-      lights(rays, resolved.snapshot),
+      environment(scene),
+      lights(rays, resolved.snapshot, environment),
       media(scene, resolved.snapshot),
       integrator{rays,
                  lights,
                  media,
-                 scene.environment,
+                 environment,
                  resolved.options.bounces,
                  resolved.options.roulette,
                  static_cast<float>(resolved.options.occlusionDistance)} {}
 
-Film::Film(int width, int height, bool media, const std::vector<int>& bounceLayers) {
+Film::Film(int width, int height, bool media, bool environment, const std::vector<int>& bounceLayers)
+    : furtherLayers_(3 * (bounceLayers.size() + (environment ? 1 : 0))) {
   if (media) {
     names_.assign(kMediaLayers.begin(), kMediaLayers.end());
   } else {
@@ -81,6 +83,10 @@ Film::Film(int width, int height, bool media, const std::vector<int>& bounceLaye
       names_.push_back(name);
       means_.emplace_back(width, height, 3);
     }
+  }
+  for (std::size_t layer = 0; environment && layer < kEnvironmentLayers.size(); ++layer) {
+    names_.push_back(kEnvironmentLayers[layer]);
+    means_.emplace_back(width, height, 3);
   }
   variances_ = means_;
   middle_.assign(means_[0].pixelCount(), 0.0);
@@ -168,7 +174,8 @@ LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& 
         "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");
   }
   const Tracer tracer(scene, resolved);
-  Film film(options.width, options.height, !tracer.media.empty(), options.bounceLayers);
+  Film film(options.width, options.height, !tracer.media.empty(), SceneTraits::of(scene).environment,
+            options.bounceLayers);
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;
   if (options.progress) {

@@ -50,7 +50,10 @@ void add(Scene& scene, const Scene& real) {
     if (!lights.contains(light.name)) scene.lights.push_back(light);
   for (const Medium& medium : real.media)
     if (!media.contains(medium.name)) scene.media.push_back(medium);
-  if (scene.environment == glm::vec3(0.0f)) scene.environment = real.environment;
+  if (scene.environment == glm::vec3(0.0f)) {
+    scene.environment = real.environment;
+    scene.environmentMap = real.environmentMap;
+  }
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ struct Tracer {
   Tracer(const Scene& scene, const ResolvedOptions& resolved);
 
   RayScene rays;
+  EnvironmentLight environment;
   LightSampler lights;
   Media media;
   Integrator integrator;
@@ -104,21 +105,36 @@ inline std::array<glm::vec3, 3> bounceRadiancesOf(const BounceSums::Sum& sum, co
   return {direct + transmittance * (sum.diffuse + sum.glossy) + sum.scattered, sum.diffuse, sum.glossy};
 }
 
-/// Mean and variance of the mean, in one pixel, of the layers of numbers of bounces.
-class BounceStatistics {
+/// The layers of the environment's light, in the order of environmentRadiancesOf().
+inline constexpr std::array<const char*, 3> kEnvironmentLayers = {"environment", "environment_diffuse",
+                                                                  "environment_glossy"};
+inline std::array<glm::vec3, 3> environmentRadiancesOf(const PathSample& sample) {
+  if (sample.real) return {};
+  return {sample.environmentDiffuse + sample.environmentGlossy, sample.environmentDiffuse,
+          sample.environmentGlossy};
+}
+
+/// Mean and variance of the mean, in one pixel, of the layers that not every reference has: those of numbers
+/// of bounces and of the environment.
+class FurtherStatistics {
  public:
-  explicit BounceStatistics(std::size_t limits) : sum_(9 * limits), squares_(9 * limits) {}
+  explicit FurtherStatistics(std::size_t layers) : sum_(3 * layers), squares_(3 * layers) {}
   void add(const BounceSums& sums, const glm::vec3& direct, const glm::vec3& transmittance) {
-    std::size_t channel = 0;
-    for (const BounceSums::Sum& sum : sums.sums) {
-      for (const glm::vec3& radiance : bounceRadiancesOf(sum, direct, transmittance)) {
-        for (int i = 0; i < 3; ++i, ++channel) {
-          const auto value = static_cast<double>(radiance[i]);
-          sum_[channel] += value;
-          squares_[channel] += value * value;
-        }
+    for (const BounceSums::Sum& sum : sums.sums) add(bounceRadiancesOf(sum, direct, transmittance));
+  }
+  void add(const std::array<glm::vec3, 3>& radiances) {
+    for (const glm::vec3& radiance : radiances) {
+      for (int i = 0; i < 3; ++i, ++next_) {
+        const auto value = static_cast<double>(radiance[i]);
+        sum_[next_] += value;
+        squares_[next_] += value * value;
       }
     }
+  }
+  /// The path has added all its layers.
+  void endPath() {
+    assert(next_ == sum_.size());
+    next_ = 0;
     ++count_;
   }
   std::size_t channels() const { return sum_.size(); }
@@ -130,6 +146,7 @@ class BounceStatistics {
 
  private:
   std::vector<double> sum_, squares_;
+  std::size_t next_ = 0;  ///< channel
   double count_ = 0.0;
 };
 
@@ -184,11 +201,11 @@ struct CutOff {
 /// r, late / middle = x (1 + x) with x = r^(N/4), and late x^2 / (1 - x^2) lies beyond the last bounce N.
 CutOff cutOffOf(double middle, double late, double full, int bounces);
 
-/// The images that pixels are written to: the radiance layers, the occlusion, and the layers of numbers of
-/// bounces.
+/// The images that pixels are written to: the radiance layers, the occlusion, the layers of numbers of
+/// bounces and those of the environment.
 class Film {
  public:
-  Film(int width, int height, bool media, const std::vector<int>& bounceLayers);
+  Film(int width, int height, bool media, bool environment, const std::vector<int>& bounceLayers);
   template <std::size_t Layers>
   void write(int x, int y, const PixelStatistics<Layers>& pixel) {
     assert(means_.size() >= Layers + 1);
@@ -204,7 +221,8 @@ class Film {
     middle_[index] = pixel.middle();
     late_[index] = pixel.late();
   }
-  void write(int x, int y, const BounceStatistics& pixel) {
+  std::size_t furtherLayers() const { return furtherLayers_; }
+  void write(int x, int y, const FurtherStatistics& pixel) {
     const std::size_t first = means_.size() - pixel.channels() / 3;
     for (std::size_t channel = 0; channel < pixel.channels(); ++channel) {
       const int component = static_cast<int>(channel % 3);
@@ -218,6 +236,7 @@ class Film {
 
  private:
   std::vector<std::string> names_;
+  std::size_t furtherLayers_;
   std::vector<ImageBuffer> means_, variances_;
   std::vector<double> middle_, late_;  ///< LateLight of each pixel
 };
@@ -260,7 +279,7 @@ inline CameraRay cameraRay(const CameraView& camera, const glm::vec3& direction,
   return {camera.eye + onLens, glm::normalize(camera.focus * direction - onLens)};
 }
 
-/// Paths through the pixels of one tile: addPath(statistics, statistics of bounces, random, ray) each. The
+/// Paths through the pixels of one tile: addPath(statistics, further statistics, random, ray) each. The
 /// numbers of a path depend on seed, pixel and sample only.
 template <std::size_t Layers, class AddPath>
 void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
@@ -273,18 +292,18 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
   const glm::vec3 perRow = (camera.direction(0.0f, height) - corner) / height;
   tiles.forEachPixel(tile, [&](int x, int y) {
     PixelStatistics<Layers> pixel;
-    BounceStatistics ofBounces(resolved.options.bounceLayers.size());
+    FurtherStatistics further(film.furtherLayers());
     const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
                         static_cast<std::uint32_t>(x);
     for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
       RandomStream random(resolved.options.seed, stream, static_cast<std::uint32_t>(sample));
       const float column = static_cast<float>(x) + random.uniform(),
                   row = static_cast<float>(y) + random.uniform();
-      addPath(pixel, ofBounces, random,
-              cameraRay(camera, corner + column * perColumn + row * perRow, random));
+      addPath(pixel, further, random, cameraRay(camera, corner + column * perColumn + row * perRow, random));
+      further.endPath();
     }
     film.write(x, y, pixel);
-    if (ofBounces.channels() > 0) film.write(x, y, ofBounces);
+    if (further.channels() > 0) film.write(x, y, further);
   });
 }
 
@@ -294,21 +313,23 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
   const Integrator& integrator = tracer.integrator;
   BounceSums sums(resolved.options.bounceLayers);
   BounceSums* const asked = sums.sums.empty() ? nullptr : &sums;
+  const bool environment = film.furtherLayers() > 3 * sums.sums.size();
   if (tracer.media.empty()) {
     renderPixels<kSurfaceLayers.size()>(
         resolved, tiles, tile, film,
-        [&](auto& pixel, auto& ofBounces, RandomStream& random, const CameraRay& ray) {
+        [&](auto& pixel, auto& further, RandomStream& random, const CameraRay& ray) {
           sums.clear();
           const PathSample sample = integrator.trace(rays, random, ray.origin, ray.direction, asked);
           if (sample.real) sums.clear();
           pixel.add(radiancesOf(sample), sample.real ? 1.0f : sample.unoccluded);
           pixel.addLate(sample.lateLight);
-          if (asked) ofBounces.add(sums, sample.real ? glm::vec3(0.0f) : sample.direct, glm::vec3(1.0f));
+          further.add(sums, sample.real ? glm::vec3(0.0f) : sample.direct, glm::vec3(1.0f));
+          if (environment) further.add(environmentRadiancesOf(sample));
         });
   } else {
     renderPixels<kMediaLayers.size()>(
         resolved, tiles, tile, film,
-        [&](auto& pixel, auto& ofBounces, RandomStream& random, const CameraRay& ray) {
+        [&](auto& pixel, auto& further, RandomStream& random, const CameraRay& ray) {
           sums.clear();
           const MediaPathSample sample =
               integrator.traceThroughMedia(rays, random, ray.origin, ray.direction, asked);
@@ -316,11 +337,11 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
           if (real) sums.clear();
           pixel.add(radiancesOf(sample), real ? 1.0f : sample.surfaces.unoccluded);
           pixel.addLate(sample.lateLight);
-          if (asked)
-            ofBounces.add(sums,
-                          sample.transmittance * (real ? glm::vec3(0.0f) : sample.surfaces.direct) +
-                              sample.scatteredSingle,
-                          sample.transmittance);
+          further.add(sums,
+                      sample.transmittance * (real ? glm::vec3(0.0f) : sample.surfaces.direct) +
+                          sample.scatteredSingle,
+                      sample.transmittance);
+          if (environment) further.add(environmentRadiancesOf(sample.surfaces));
         });
   }
 }

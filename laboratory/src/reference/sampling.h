@@ -1,6 +1,7 @@
 // Random directions and the estimators' weights.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -65,12 +66,18 @@ inline glm::vec3 samplePowerCosine(const glm::vec3& axis, float exponent, float 
   return aboutAxis(axis, inDisc.x, inDisc.y, cosine);
 }
 
+/// Mean of the channels, of which negative ones count as 0: the weight of choosing a light.
+inline double meanOf(const glm::vec3& rgb) {
+  return (std::max(0.0, double(rgb.x)) + std::max(0.0, double(rgb.y)) + std::max(0.0, double(rgb.z))) / 3.0;
+}
+
 /// Picks an index with given probabilities in constant time. Vose 1991, "A linear algorithm for generating
 /// random numbers with a given distribution".
 class AliasTable {
  public:
   AliasTable() = default;
-  explicit AliasTable(const std::vector<double>& weights);  ///< not negative, with a positive sum
+  explicit AliasTable(std::vector<double> weights);    ///< not negative, with a positive sum
+  static constexpr std::size_t kBytesWhileBuilt = 20;  ///< for each weight, the weights included
   bool empty() const { return slots_.empty(); }
   /// One of the indices for two independent numbers of 32 random bits: the first chooses the slot, the second
   /// between its two indices. (What a first number leaves below the slot would be 12 bits for a million

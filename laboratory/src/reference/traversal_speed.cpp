@@ -78,7 +78,8 @@ TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions&
   const ResolvedOptions resolved = resolve(scene, given);
   const Tracer tracer(scene, resolved);
   const Tiles tiles(resolved.options.width, resolved.options.height);
-  Film film(resolved.options.width, resolved.options.height, !tracer.media.empty(), {});
+  Film film(resolved.options.width, resolved.options.height, !tracer.media.empty(),
+            SceneTraits::of(scene).environment, {});
 
   std::vector<std::vector<RecordedRay>> recorded(static_cast<std::size_t>(tiles.count()));
   forEachTile(tiles, given.threads, [&](int tile) {

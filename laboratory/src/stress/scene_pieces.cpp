@@ -109,6 +109,12 @@ Scene brighter(const Scene& scene, float factor) {
   for (Light& light : result.lights) light.power *= factor;
   for (Material& material : result.materials) material.emission *= factor;
   result.environment *= factor;
+  if (scene.environmentMap) {
+    auto map = std::make_shared<EnvironmentMap>(*scene.environmentMap);
+    for (glm::vec3& radiance : map->radiance) radiance *= factor;
+    map->finish();
+    result.environmentMap = std::move(map);
+  }
   return result;
 }
 

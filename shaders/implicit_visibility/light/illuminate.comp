@@ -9,6 +9,9 @@
 #pragma lumivox require !LISTED || (!ENVIRONMENT && !OUTGOING)
 #include "sent.glsl"
 #include "common/constants.glsl"
+#if ENVIRONMENT
+#include "environment_of_bin.glsl"
+#endif
 
 // Eight invocations share the links of a leaf; the first one adds up their sums, always in the same order.
 layout(local_size_x = 64) in;
@@ -63,8 +66,9 @@ void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
 void addSky(uint begin, uint end, Leaf leaf, inout vec3 front, inout vec3 back) {
   for (uint bin = begin; bin < end; ++bin) {
     float weight = binWeight(bin, leaf.normal, leaf.scale);
-    if (weight > 0.0) front += weight * environment;
-    else back -= weight * environment;
+    vec3 sky = environmentOfBin(environment, bin);
+    if (weight > 0.0) front += weight * sky;
+    else back -= weight * sky;
   }
 }
 #endif

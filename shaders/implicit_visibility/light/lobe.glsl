@@ -4,6 +4,9 @@
 #include "../links/links.glsl"
 #include "sent.glsl"
 #include "common/brdf.glsl"
+#if ENVIRONMENT
+#include "environment_of_bin.glsl"
+#endif
 
 layout(std140, binding = 3) uniform Lobe {
   vec3 environment;  // W/(sr m^2)
@@ -27,7 +30,7 @@ vec3 glossyRadiance(uint leaf, vec3 normal, vec3 toEye, vec4 specular) {
     uvec2 link = links[entry.x + i];
     uint bin = linkBin(link);
 #if ENVIRONMENT
-    for (; expected < bin; ++expected) sum += environment * lobeWeight(expected, normal, scale, toEye, specular);
+    for (; expected < bin; ++expected) sum += environmentOfBin(environment, expected) * lobeWeight(expected, normal, scale, toEye, specular);
     expected = bin + 1u;
 #endif
     vec3 weight = lobeWeight(bin, normal, scale, toEye, specular);
@@ -35,7 +38,8 @@ vec3 glossyRadiance(uint leaf, vec3 normal, vec3 toEye, vec4 specular) {
     sum += weight * sentOver(link, position);
   }
 #if ENVIRONMENT
-  for (; expected < uint(binCount); ++expected) sum += environment * lobeWeight(expected, normal, scale, toEye, specular);
+  for (; expected < uint(binCount); ++expected)
+    sum += environmentOfBin(environment, expected) * lobeWeight(expected, normal, scale, toEye, specular);
 #endif
   return sum;
 }

@@ -15,6 +15,9 @@
 #include "common/two_sided_light.glsl"
 #include "leaf_points.glsl"
 #endif
+#if ENVIRONMENT
+#include "environment_of_bin.glsl"
+#endif
 #if !OUTGOING
 #include "../links/direction_bins.glsl"
 #endif
@@ -56,7 +59,7 @@ Arrival arrivalOf(uint bin, uint leaf, vec4 place, vec3 normal) {
   vec3 radiance = vec3(0.0);
   if (i < entry.y && linkBin(links[entry.x + i]) == bin) radiance = sentOver(links[entry.x + i], place.xyz);
 #if ENVIRONMENT
-  else radiance = environment;
+  else radiance = environmentOfBin(environment, bin);
 #endif
   return Arrival(abs(weight) * radiance, directions[bin].xyz, weight);
 }

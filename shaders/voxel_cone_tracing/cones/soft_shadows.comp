@@ -6,6 +6,13 @@
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require MEDIUM == none || LIGHTS
+#include "common/environment.glsl"
+#include "common/environment_view.glsl"
+// The environment in a pixel, as wide as the pixel.
+vec3 environmentSeen(vec3 constant, ivec2 pixel) {
+  vec3 direction = directionOfPixel(pixel);
+  return environmentAlong(constant, direction, 0.5 * length(viewPerRow.xyz) / length(direction));
+}
 #include "common/direct_light.glsl"
 #include "surfaces.glsl"
 

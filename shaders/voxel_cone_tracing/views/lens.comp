@@ -3,6 +3,9 @@
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
 #include "../cones/surfaces.glsl"
+#if ENVIRONMENT
+#include "common/environment.glsl"
+#endif
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
@@ -76,7 +79,8 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
   if (covering.through > 1.0 - kOpaque) passed *= exp(-opticalDepth(eyeWorld + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
   // A cone that ended early, as opaque, gets no light from the environment.
-  if (covering.through > 1.0 - kOpaque) radiance += passed * (covering.through * environment);
+  if (covering.through > 1.0 - kOpaque)
+    radiance += passed * (covering.through * environmentAlong(environment, direction, 0.5 * pixelWidth * depthPerMetre));
 #endif
   return radiance;
 }

@@ -7,6 +7,7 @@
 #include "../passes.h"
 #include "display_vertices.h"
 #include "light.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "outgoing.h"
 
@@ -158,7 +159,9 @@ class DisplayPass : public Pass {
                  const gpu::TextureRef& outgoing, bool sky, const Image& added) const {
     using namespace display_glossy;
     const shader::BindingSet bound{
-        common, LinkBinding(*links),
+        common,
+        LinkBinding(*links),
+        EnvironmentBinding(frame),
         display_glossy::lobe({frame.sceneDescription().environment, frame.snapshot().camera.eye}),
         sentRadiance(radiance, gpu::Sampling::nearest),
         OutgoingBinding(outgoing, light->outgoingRows, light->directions)};
@@ -170,7 +173,7 @@ class DisplayPass : public Pass {
                                            .environment = sky,
                                            .added = added.texture != nullptr,
                                            .outgoing = passedOn},
-                                   Constants{.mostLeaves = most}),
+                                   Constants{.mostLeaves = most, .environmentMap = environmentMapOf(frame)}),
                      {bound, cellBinding(frame), display_glossy::added(added.texture, gpu::Sampling::nearest),
                       shownImage(result.texture)},
                      pixels(frame));
@@ -181,7 +184,7 @@ class DisplayPass : public Pass {
     if (elements->specular != nullptr && elements->leafCount > 0)
       frame.dispatchList(
           frame.program(Variant{.at = Variant::atElement, .environment = sky, .outgoing = passedOn},
-                        Constants{}),
+                        Constants{.environmentMap = environmentMapOf(frame)}),
           {bound, speculars(elements->specular, gpu::Sampling::nearest), shownImage(atLeaves)},
           static_cast<std::uint64_t>(elements->leafCount));
     return show(frame, common, display::Variant::ofValue, atLeaves, added);

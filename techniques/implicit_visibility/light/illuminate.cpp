@@ -4,6 +4,7 @@
 
 #include "../passes.h"
 #include "light.h"
+#include "lumivox/toolkit/environment.h"
 #include "outgoing.h"
 
 namespace lumivox::implicit_visibility {
@@ -174,10 +175,11 @@ class IlluminatePass : public Pass {
   }
 
   void gather(PassContext& frame, const shader::BindingSet& common, illuminate::Variant variant,
-              const illuminate::Constants& constants, const Sent& sent, const ElementLight& result,
+              illuminate::Constants constants, const Sent& sent, const ElementLight& result,
               const gpu::TextureRef& irradiance, const gpu::TextureRef& reflected) {
     variant.weight = weighsElements() ? illuminate::Variant::weightElement : illuminate::Variant::weightBin;
     shader::BindingSet bound{common,
+                             EnvironmentBinding(frame),
                              illuminate::illumination({frame.sceneDescription().environment}),
                              illuminate::lights(links->lights),
                              illuminate::sentRadiance(sent.radiance, gpu::Sampling::nearest),
@@ -187,6 +189,7 @@ class IlluminatePass : public Pass {
                              illuminate::reflectedImage(reflected),
                              illuminate::radianceImage(result.radiance)};
     if (weighsElements()) bound.add(illuminate::counts(linksToSameNode(frame)));
+    constants.environmentMap = environmentMapOf(frame);
     frame.dispatchList(frame.program(variant, constants), bound,
                        kTogether * static_cast<std::uint64_t>(elements->leafCount));
   }
@@ -217,13 +220,14 @@ class IlluminatePass : public Pass {
   }
 
   void reflect(PassContext& frame, const OutgoingRows& rows, const reflect_glossy::Variant& variant,
-               const reflect_glossy::Constants& constants, int arrivals, const shader::BindingSet& bound,
+               reflect_glossy::Constants constants, int arrivals, const shader::BindingSet& bound,
                int resolving, const ElementLight& result, const gpu::TextureRef& outgoing) const {
     if (rows.leaves == 0) return;
     const auto all = static_cast<std::uint64_t>(6 * directions * directions);
+    constants.environmentMap = environmentMapOf(frame);
     frame.dispatchList(
         frame.program(variant, constants),
-        {bound,
+        {bound, EnvironmentBinding(frame),
          reflect_glossy::reflection({frame.sceneDescription().environment, rows.leaves, directions, arrivals,
                                      static_cast<float>(resolvedExponent(resolving))}),
          reflect_glossy::outgoingNodes(rows.nodes),

@@ -3,6 +3,7 @@
 #include "../dense/normal_lobes.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
 
@@ -96,15 +97,17 @@ class GatherPass : public Pass {
                                       .every = every,
                                       .pattern = side,
                                       .arrivingDiffuse = arrivingDiffuse,
-                                      .arrivingGlossy = arrivingGlossy};
+                                      .arrivingGlossy = arrivingGlossy,
+                                      .environmentMap = environmentMapOf(frame)};
     Samples samples{arrivingDiffuse ? frame.texture(ofSamples, "gathered radiance") : textureOf(diffuse),
                     arrivingGlossy ? frame.texture(ofSamples, "gathered radiance") : textureOf(glossy)};
     shader::BindingSet ofLobes;
     if (lobes.present()) ofLobes.add(gather::lobeGrid(lobes->lobes, gpu::Sampling::linearMipsBorder));
     frame.dispatch(frame.program(variant, constants),
                    {gather::parameters({.eyeWorld = frame.snapshot().camera.eye, .coneRatio = coneRatio}),
-                    GBufferBinding(*gbuffer), bound, input, ofLobes, march.binding(frame, input),
-                    gather::diffuseImage(samples.diffuse), gather::glossyImage(samples.glossy)},
+                    GBufferBinding(*gbuffer), bound, input, ofLobes, EnvironmentBinding(frame),
+                    march.binding(frame, input), gather::diffuseImage(samples.diffuse),
+                    gather::glossyImage(samples.glossy)},
                    gathered);
     const reconstruct::Parameters filter{
         .every = every, .pattern = side, .tolerance = tolerance * input.voxel};

@@ -5,6 +5,7 @@
 #include "light_discs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/light_samples.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
@@ -111,7 +112,8 @@ class SoftShadowsPass : public Pass {
                                    .store = input.axis,
                                    .faces = input.faces};
     const shadows::Constants constants{.radiusOf = static_cast<int>(static_cast<Radius>(radius)),
-                                       .asMedium = opacity == Opacity::medium};
+                                       .asMedium = opacity == Opacity::medium,
+                                       .environmentMap = environmentMapOf(frame)};
     const CameraView& camera = frame.snapshot().camera;
     radiance = Image{frame.image("direct radiance")};
     frame.dispatch(
@@ -127,7 +129,7 @@ class SoftShadowsPass : public Pass {
                            .footprint = footprint,
                            .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height)}),
          GBufferBinding(*gbuffer), shadows::emissionImage(gbuffer->emission), bound, boundMedia, input,
-         shadows::radianceImage(radiance->texture)},
+         EnvironmentBinding(frame), EnvironmentViewBinding(frame), shadows::radianceImage(radiance->texture)},
         pixels(frame));
   }
 };

@@ -16,6 +16,7 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/change_tracking.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/media.h"
 #include "lumivox/toolkit/volume_room.h"
 
@@ -222,7 +223,7 @@ class Injection {
     // the voxels of the bounce before hold, or the environment.
     float brightest =
         static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
-    const glm::vec3& sky = frame.sceneDescription().environment;
+    const glm::vec3 sky = brightestOfEnvironment(frame.sceneDescription());
     if (bounces > 1) brightest += std::max({sky.r, sky.g, sky.b});
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
@@ -254,8 +255,10 @@ class Injection {
     // voxel in which they begin. With one value for all sides the voxel in which they begin is the surface
     // itself.
     const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
-    forEachFragment(frame, frame.program(variant),
-                    {bounce::parameters({.gridLow = fragments_->grid.low,
+    forEachFragment(frame,
+                    frame.program(variant, bounce::Constants{.environmentMap = environmentMapOf(frame)}),
+                    {EnvironmentBinding(frame),
+                     bounce::parameters({.gridLow = fragments_->grid.low,
                                          .voxelSize = fragments_->grid.voxelSize,
                                          .brickCount = sums.brickCount,
                                          .coneCount = cones,

@@ -2,6 +2,7 @@
 #include "../cones/march.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/media.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -46,7 +47,8 @@ class LensPass : public Pass {
                                                .store = input.axis,
                                                .faces = input.faces},
                                  code::Constants{.widthRule = static_cast<int>(static_cast<Width>(width)),
-                                                 .asMedium = opacity == Opacity::medium}),
+                                                 .asMedium = opacity == Opacity::medium,
+                                                 .environmentMap = environmentMapOf(frame)}),
                    {code::lens({.eyeWorld = camera.eye,
                                 .aperture = camera.aperture,
                                 .corner = corner,
@@ -57,7 +59,7 @@ class LensPass : public Pass {
                                 .stepShare = step,
                                 .environment = frame.sceneDescription().environment,
                                 .footprint = footprint}),
-                    bound, input, code::radianceImage(radiance->texture)},
+                    bound, input, EnvironmentBinding(frame), code::radianceImage(radiance->texture)},
                    pixels(frame));
   }
 };

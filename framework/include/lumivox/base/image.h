@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -63,8 +64,12 @@ struct LayeredImage {
 };
 
 /// Reads a scanline or tiled EXR (half, float or uint channels, data window as the image). Error names the
-/// file on anything malformed.
-LayeredImage readExr(const std::filesystem::path& path);
+/// file on anything malformed, and if it has more pixels than the limit.
+LayeredImage readExr(const std::filesystem::path& path,
+                     std::uint64_t mostPixels = std::numeric_limits<std::uint64_t>::max());
+/// Reads a Radiance image (.hdr, RGBE): three channels, divided by the exposure that its header names. Error
+/// as above.
+ImageBuffer readHdr(const std::filesystem::path& path, std::uint64_t mostPixels);
 /// The text attributes of its first part alone, without its pixels.
 std::map<std::string, std::string> readExrAttributes(const std::filesystem::path& path);
 /// Writes 32-bit float ZIP-compressed scanlines, atomically.

@@ -53,6 +53,12 @@ class GpuScene {
   const gpu::Buffer& objects() const;        ///< ObjectData each
   const gpu::Texture& whiteTexture() const;  ///< 1x1 white: the neutral diffuse texture and mask
   const std::vector<SceneDraw>& draws() const;
+  /// Radiance of the environment by direction of the world, at several widths: block Environment of
+  /// shaders/common/environment.glsl. Without a map: one texel of the constant radiance.
+  const gpu::Buffer& environmentLevels();
+  /// The texels of the map in latitude and longitude, rgba32f (scene/environment.h). Without a map: one
+  /// texel.
+  const gpu::Texture& environmentTexels();
 
  private:
   struct State;

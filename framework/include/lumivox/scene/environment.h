@@ -20,7 +20,9 @@ struct EnvironmentMap {
   int width = 0, height = 0;
   std::vector<glm::vec3> radiance;  ///< W/(sr m^2), finite and not negative; row by row from the zenith
   glm::mat3 toMap{1.0f};            ///< from world directions to those of the convention: a rotation
-  ContentHash hash;                 ///< of everything above
+  glm::vec3 brightest{0.0f};        ///< largest radiance of each channel; finish() sets it
+  ContentHash hash;                 ///< of everything above; finish() sets it
+  void finish();
   bool operator==(const EnvironmentMap& other) const { return hash == other.hash; }
 
   /// The texel in this direction of the world (not zero, of any length): its index in `radiance`.
@@ -28,6 +30,8 @@ struct EnvironmentMap {
   const glm::vec3& towards(const glm::vec3& direction) const { return radiance[texelTowards(direction)]; }
   /// The direction of the world at a point of the image, column and row in texels from the upper left corner.
   glm::vec3 direction(float column, float row) const;
+  /// The direction of the world at (u, v) in [0, 1) of a texel, evenly by solid angle.
+  glm::vec3 directionWithin(int column, int row, float u, float v) const;
   /// Solid angle of each texel of a row, sr.
   double solidAngle(int row) const;
   /// Mean radiance over the sphere.

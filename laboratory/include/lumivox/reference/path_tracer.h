@@ -54,15 +54,17 @@ struct ReferenceOptions {
 /// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct +
 /// both), indirect_diffuse, indirect_glossy, full (= direct + both indirect), ambient_occlusion (one channel
 /// Y: unoccluded fraction, cosine-weighted); with media also transmittance, scattered_single (light of the
-/// lights, scattered once and nothing else), scattered_multiple (all other) and scattered; and for each of
-/// them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their
-/// own, right variance. For each N of `bounceLayers` also bounces_N_diffuse and bounces_N_glossy, what
-/// arrives after up to N further bounces, and bounces_N, their sum with direct (and with media dimmed, with
-/// the light that these scatter after up to N further bounces; there a scattering counts as a bounce, which
-/// one_bounce leaves out). Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed,
-/// time, camera, resolution, occlusion_distance, tracer_version, bounce_layers (when there are any), cut_off
-/// (the estimated share of all light that lies beyond the last bounce, which is warned of above 1 %, and the
-/// factor from bounce to bounce). At least two samples per pixel, or Error.
+/// lights, scattered once and nothing else), scattered_multiple (all other) and scattered; where there is an
+/// environment also environment_diffuse, environment_glossy and their sum environment (its light that no
+/// other surface reflected on its way: a part of one_bounce and indirect, which others count as direct); and
+/// for each of them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums
+/// have their own, right variance. For each N of `bounceLayers` also bounces_N_diffuse and bounces_N_glossy,
+/// what arrives after up to N further bounces, and bounces_N, their sum with direct (and with media dimmed,
+/// with the light that these scatter after up to N further bounces; there a scattering counts as a bounce,
+/// which one_bounce leaves out). Attributes hold the provenance: scene, hash, samples, bounces, roulette,
+/// seed, time, camera, resolution, occlusion_distance, tracer_version, bounce_layers (when there are any),
+/// cut_off (the estimated share of all light that lies beyond the last bounce, which is warned of above 1 %,
+/// and the factor from bounce to bounce). At least two samples per pixel, or Error.
 LayeredImage renderReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The same through the cache (base/file.h cacheDirectory), keyed by everything the image depends on. A
