@@ -211,6 +211,42 @@ TEST_CASE("what moves runs what reads it and what depends on that again, and not
   CHECK(executor.explain().poolBytes == bytes);
 }
 
+namespace {
+
+/// Its image is the power of the first light.
+struct PaintLight : Toy {
+  using Toy::Toy;
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::lights; }
+  void run(PassContext& frame) override {
+    Image image{frame.image("image")};
+    image.texture->clear(glm::vec4(frame.snapshot().lights.at(0).power, 1.0f));
+    radiance = image;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a light that changes runs what reads lights again, and is named where other passes stay") {
+  Fixture f;
+  f.techniques.add<PaintLight>("toy", "paint_light");
+  Light lamp;
+  lamp.name = "lamp";
+  lamp.power = glm::vec3(3.0f);
+  lamp.motion.emplace().interpolation = Interpolation::step;
+  lamp.motion->keys.resize(1);
+  lamp.motion->keys[0].time = 1.0;
+  lamp.motion->keys[0].power = glm::vec3(0.0f);
+  f.scene.lights = {lamp};
+  PipelineExecutor executor = f.executor(
+      "pass shines toy.paint_light { }\npass rests toy.paint { }\n"
+      "output a shines.radiance\noutput b rests.radiance");
+  CHECK(first(executor.render(0.0), "a") == 3.0f);
+  CHECK(first(executor.render(1.0, 1), "a") == 0.0f);
+  CHECK(whyLeftOut(executor, LeftOut::Level::time, "shines").empty());
+  CHECK_THAT(whyLeftOut(executor, LeftOut::Level::time, "rests"), Tells("not", "change", "light", "lamp"));
+}
+
 TEST_CASE("a pass that reads a part of the camera runs again when that part changed, and only then") {
   Fixture f;
   f.techniques.add<SteppedGrid>("toy", "stepped_grid");

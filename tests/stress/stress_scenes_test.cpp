@@ -71,6 +71,39 @@ TEST_CASE("a scene that is scaled, turned and moved with everything in it has th
   CHECK(std::abs(turned.mean - still.mean) < 3.0 * noise);
 }
 
+TEST_CASE("lights and cameras that move do so in a scene that is scaled, turned and moved, and brighter") {
+  Scene scene = furnishedRoom();
+  LightMotion& motion = scene.lights[0].motion.emplace();
+  motion.rigid =
+      RigidMotion{.axis = {1, 0, 0}, .angularSpeed = 0.3, .pivot = {0, 1, 0}, .velocity = {0, 0, 1}};
+  motion.keys.resize(2);
+  motion.keys[0].position = glm::dvec3(0.8, 0.9, 0.7);
+  motion.keys[0].direction = glm::dvec3(0, -1, 0);
+  motion.keys[0].power = glm::vec3(0.5f);
+  motion.keys[1] = {2.0, glm::dvec3(0.2, 0.5, 0.7), glm::dvec3(1, 0, 0), glm::vec3(1.5f), {}, {}};
+  scene.cameras[0].motion = RigidMotion{.angularSpeed = 0.2, .pivot = {0.5, 0, 0.5}};
+  stress::Similarity by;
+  by.scale = 10.0;
+  by.rotation = stress::turnAboutY(0.5 * kPi);
+  by.translation = {3.0, -20.0, 5.0};
+  const SceneSnapshot before = snapshotOf(scene, 1.5), after = snapshotOf(stress::moved(scene, by), 1.5),
+                      bright = snapshotOf(stress::brighter(scene, 4.0f), 1.5);
+  const auto place = [&](const SceneSnapshot& snapshot, const glm::vec3& p) {
+    return snapshot.origin + glm::dvec3(p);
+  };
+  const auto checkSame = [](const glm::dvec3& a, const glm::dvec3& b) { CHECK(glm::distance(a, b) < 1e-4); };
+  const auto expected = [&](const glm::vec3& p) {
+    return by.scale * (by.rotation * place(before, p)) + by.translation;
+  };
+  const LightState &one = before.lights[0], &other = after.lights[0];
+  checkSame(place(after, other.position), expected(one.position));
+  checkSame(other.direction, by.rotation * glm::dvec3(one.direction));
+  checkSame(other.power, 100.0f * one.power);
+  checkSame(place(after, after.camera.eye), expected(before.camera.eye));
+  checkSame(after.camera.forward, by.rotation * glm::dvec3(before.camera.forward));
+  checkSame(bright.lights[0].power, 4.0f * one.power);
+}
+
 TEST_CASE("what cannot be turned without changing what it is is refused") {
   stress::Similarity by;
   by.rotation = stress::turnAboutY(0.3);

@@ -63,7 +63,7 @@ std::optional<Scene> sceneIfPresent(const std::filesystem::path& file) {
 
 bool changes(const Scene& scene) {
   const SceneTraits traits = SceneTraits::of(scene);
-  return traits.movingGeometry || traits.movingCamera || traits.particles;
+  return traits.movingGeometry || traits.movingCamera || traits.movingLights || traits.particles;
 }
 
 void checkSameOutputs(const FrameResult& pruned, const FrameResult& whole) {
@@ -168,7 +168,7 @@ std::string whatMayBeLeftOut(const SceneTraits& traits) {
   std::string kind;
   for (const bool has :
        {traits.triangles, traits.textures, traits.masks, traits.glossy, traits.emission, traits.environment,
-        traits.medium, traits.particles, traits.movingGeometry, traits.movingCamera,
+        traits.medium, traits.particles, traits.movingGeometry, traits.movingCamera, traits.movingLights,
         traits.directionalLights > 0, traits.pointLights > 0, traits.spotLights > 0})
     kind += has ? '1' : '0';
   return kind;
@@ -288,6 +288,40 @@ TEST_CASE("leaving out gives bit-identical fragments from every voxelizer on the
 }
 TEST_CASE("leaving out gives bit-identical fragments from every voxelizer on the well-known models, part 2") {
   checkPart(wellKnownModels(), 2, 2, checkSameFragments);
+}
+
+namespace {
+
+/// Calls back for each committed pipeline that has images, with its small options.
+void forEachPipeline(const std::function<void(const Pipeline&, RenderOptions)>& check) {
+  for (const auto& file : filesIn("scenes/pipelines", ".pipeline")) {
+    if (file.stem() == "thesis_cone_tracing") continue;  // no two runs of it have the same bits
+    const Pipeline text = withSmallMaps(file);
+    INFO(file.filename());
+    if (!text.outputs.empty()) check(text, smallOptions(text));
+  }
+}
+
+void checkReadsOf(const char* scene, const std::vector<double>& times) {
+  const Scene moving = loadScene(sourceDirectory() / "scenes" / scene);
+  forEachPipeline([&](const Pipeline& text, RenderOptions options) {
+    options.checkReads = true;
+    PipelineExecutor executor(device(), techniques(), moving, text, options);
+    for (std::size_t frame = 0; frame < times.size(); ++frame) {
+      const FrameResult result = executor.render(times[frame], static_cast<int>(frame));
+      for (const std::string& finding : result.readsFindings) FAIL_CHECK(times[frame] << " s: " << finding);
+    }
+  });
+}
+
+}  // namespace
+
+TEST_CASE("no pass of any pipeline misses that a lamp is switched off") {
+  checkReadsOf("switched_lamp.scene", {0.0, 0.05, 0.2});
+}
+
+TEST_CASE("no pass of any pipeline misses that the sun moves") {
+  checkReadsOf("moving_sun.scene", {0.0, 0.5});
 }
 
 TEST_CASE("the same image comes from SPIR-V and from the GLSL text made of it") {

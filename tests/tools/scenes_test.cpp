@@ -218,6 +218,33 @@ TEST_CASE("each scene has what it is there for") {
   CHECK((spinning.movingGeometry && !spinning.movingCamera));
 }
 
+TEST_CASE("the switched lamp goes out between the third and the fourth frame, and a dim sun stays") {
+  const Scene scene = load("switched_lamp");
+  const SceneTraits traits = SceneTraits::of(scene);
+  CHECK((traits.movingLights && !traits.movingGeometry && !traits.movingCamera));
+  constexpr double kFrame = 1.0 / 24.0;
+  for (int frame = 0; frame < 5; ++frame) {
+    const SceneSnapshot snapshot = snapshotOf(scene, frame * kFrame);
+    CAPTURE(frame);
+    CHECK(snapshot.lights.at(0).power.r == 2.0f);
+    CHECK(snapshot.lights.at(1).power.r == (frame < 3 ? 3.0f : 0.0f));
+  }
+}
+
+TEST_CASE("the moving sun turns by 15 degrees a second, and its patch stays on the floor over five frames") {
+  const Scene scene = load("moving_sun");
+  CHECK((SceneTraits::of(scene).movingLights && !SceneTraits::of(scene).movingGeometry));
+  const auto directionAt = [&](double time) { return snapshotOf(scene, time).lights.at(0).direction; };
+  const glm::vec3 start = directionAt(0.0), later = directionAt(1.0);
+  CHECK(std::atan2(later.x, -later.y) - std::atan2(start.x, -start.y) == Approx(glm::radians(15.0f)));
+  for (int frame = 0; frame < 5; ++frame) {
+    const glm::vec3 direction = directionAt(frame / 24.0);
+    for (const float corner : {-0.4f, 0.4f})  // of the hole in the ceiling, 2 m above the floor of 2 m x 2 m
+      for (const float along : {direction.x, direction.z})
+        CHECK(std::abs(corner - 2.0f * along / direction.y) <= 1.0001f);
+  }
+}
+
 TEST_CASE("the spinning box turns by 45 degrees a second about its own centre and everything else rests") {
   const Scene scene = load("spinning_box");
   const auto start = verticesSeenFromEye(scene, 0), eighth = verticesSeenFromEye(scene, 1),

@@ -118,6 +118,44 @@ TEST_CASE("what is switched off is not in the text that is written, and what sho
   CHECK_FALSE(contains(text, "lamp"));
 }
 
+TEST_CASE("lights and cameras that move stay as they move when the scene's text is written") {
+  const Workplace place;
+  std::string text = kEverything;
+  text.insert(text.rfind('}'),
+              "  animate bulb { interpolation step\n    key { time 1 s  intensity 0 } }\n"
+              "  animate sun { rotate 0 0 1 15 deg/s }\n"
+              "  animate main { rotate 0 1 0 10 deg/s  about 0 0 0 }\n");
+  place.write("moving.scene", text);
+  const Scene scene = loadScene(place.file("moving.scene"));
+  SceneEdits edits;
+  edits.powers = {{"sun", {4, 5, 6}}};
+  const Scene read = writtenAndRead(scene, edits);
+  REQUIRE(read.lights.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(read.lights[i].motion == scene.lights[i].motion);
+  CHECK(read.lights[1].power == glm::vec3(4, 5, 6));
+  CHECK(read.cameras[0].motion == scene.cameras[0].motion);
+
+  edits.off = {"light bulb"};
+  std::string written;
+  CHECK(writtenAndRead(scene, edits, &written).lights.size() == 2);
+  CHECK_FALSE(contains(written, "bulb"));
+
+  SceneEdits bulb;
+  bulb.powers = {{"bulb", {1, 1, 1}}};
+  CHECK_THROWS_WITH(edited(scene, bulb), Catch::Contains("bulb") && Catch::Contains("keys"));
+  SceneEdits moved;
+  moved.cameras["main"].eye = glm::dvec3(0, 0, 0.8);
+  CHECK_THROWS_WITH(edited(scene, moved), Catch::Contains("main") && Catch::Contains("moves"));
+
+  // A view that is made the first camera stands where the moving camera stood at that time.
+  ViewState state;
+  state.camera = "main";
+  state.time = 9.0;
+  const Camera here = cameraOf(state, scene);
+  CHECK(glm::distance(here.eye, glm::dvec3(0.9, 0, 0)) < 1e-9);
+  CHECK_FALSE((here.motion || !here.keys.empty()));
+}
+
 TEST_CASE("an edit that no scene may have, or that the text cannot say, is refused with its reason") {
   const Workplace place;
   place.write("all.scene", kEverything);

@@ -110,7 +110,10 @@ std::set<int> spread(int first, int last, int most) {
 Camera cameraOf(const RenderCommand& command, const Scene& scene) {
   Camera camera = scene.camera(command.run.camera);
   const auto place = [](const std::vector<double>& n) { return glm::dvec3(n[0], n[1], n[2]); };
-  if (command.movesCamera()) camera.keys.clear();
+  if (command.movesCamera()) {
+    camera.keys.clear();
+    camera.motion.reset();
+  }
   if (!command.eye.empty()) camera.eye = place(command.eye);
   if (!command.target.empty()) camera.target = place(command.target);
   if (command.fov > 0.0) camera.fov = command.fov;

@@ -48,6 +48,7 @@ void addLights(std::vector<Row>& rows, const Session& session) {
   const SceneEdits& edits = session.state().edits;
   for (const EditableLight& light : editableLights(session.scene())) {
     const auto edit = edits.powers.find(light.name);
+    if (light.keyed) continue;
     rows.push_back(heading("light " + light.name));
     rows.push_back(ofPart(triple("power " + light.name, unitOf(session.scene(), light),
                                  threeOf(edit == edits.powers.end() ? light.power : edit->second), 0,
@@ -122,7 +123,7 @@ void addCameras(std::vector<Row>& rows, const Session& session) {
     const std::string part = "camera " + camera.name, statement = "camera " + quoted(camera.name) + " { ";
     rows.push_back(heading(part));
     const double degrees = 180.0 / glm::pi<double>();
-    if (camera.keys.empty()) {
+    if (!moves(camera)) {
       rows.push_back(
           ofPart(triple("eye " + camera.name, "position, m", threeOf(edit.eye.value_or(camera.eye)),
                         -kFarthest, kFarthest, statement + "eye {} }"),
@@ -136,6 +137,7 @@ void addCameras(std::vector<Row>& rows, const Session& session) {
                  statement + fmt::format("eye {} target {} fov {} rad }}", written(threeOf(here.eye)),
                                          written(threeOf(here.target)), here.fov)));
     }
+    if (hasKeysOfFov(camera)) continue;
     rows.push_back(
         ofPart(number("fov " + camera.name, "field of view, deg", degrees * edit.fov.value_or(camera.fov),
                       kNarrowest, kWidest, false, statement + "fov {} deg }", "the full vertical angle"),

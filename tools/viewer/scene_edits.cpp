@@ -44,6 +44,11 @@ void removeObjects(Scene& scene, const std::set<std::string>& off) {
   scene.objects = std::move(objects);
 }
 
+bool hasKeysOfPower(const Light& light) {
+  return light.motion && std::any_of(light.motion->keys.begin(), light.motion->keys.end(),
+                                     [](const LightKey& key) { return key.power.has_value(); });
+}
+
 std::string textOf(const SceneEdits& edits) {
   std::string text;
   const auto colour = [](const glm::vec3& value) {
@@ -82,6 +87,13 @@ std::string textOf(const SceneEdits& edits) {
 
 }  // namespace
 
+bool moves(const Camera& camera) {
+  return !camera.keys.empty() || camera.motion.has_value();
+}
+bool hasKeysOfFov(const Camera& camera) {
+  return std::any_of(camera.keys.begin(), camera.keys.end(),
+                     [](const CameraKey& key) { return key.fov.has_value(); });
+}
 std::string materialName(const Material& material) {
   return material.name.substr(0, material.name.find('@'));
 }
@@ -92,7 +104,8 @@ std::string areaLightOf(const Material& material) {
 
 std::vector<EditableLight> editableLights(const Scene& scene) {
   std::vector<EditableLight> lights;
-  for (const Light& light : scene.lights) lights.push_back({light.name, false, light.power});
+  for (const Light& light : scene.lights)
+    lights.push_back({light.name, false, light.power, hasKeysOfPower(light)});
   for (const Material& material : scene.materials) {
     const std::string name = areaLightOf(material);
     if (name.empty() ||
@@ -163,11 +176,14 @@ void editCameras(Scene& scene, const SceneEdits& edits) {
     const auto found = edits.cameras.find(camera.name);
     if (found == edits.cameras.end()) continue;
     const CameraEdit& edit = found->second;
-    if ((edit.eye || edit.target) && !camera.keys.empty())
+    if ((edit.eye || edit.target) && moves(camera))
       throw Error(
-          fmt::format("camera '{}' moves by keys: its eye and target are those of the keys; "
+          fmt::format("camera '{}' moves: its eye and target are those of its keys and rates; "
                       "expected fov alone",
                       camera.name));
+    if (edit.fov && hasKeysOfFov(camera))
+      throw Error(
+          fmt::format("camera '{}' has keys of its fov; expected an edit of another camera", camera.name));
     camera.eye = edit.eye.value_or(camera.eye);
     camera.target = edit.target.value_or(camera.target);
     camera.fov = edit.fov.value_or(camera.fov);
@@ -182,9 +198,14 @@ Scene edited(const Scene& scene, const SceneEdits& edits) {
   if (edits.empty()) return result;
   editMaterials(result, edits);
   editCameras(result, edits);
-  for (Light& light : result.lights)
-    if (const auto found = edits.powers.find(light.name); found != edits.powers.end())
-      light.power = found->second;
+  for (Light& light : result.lights) {
+    const auto found = edits.powers.find(light.name);
+    if (found == edits.powers.end()) continue;
+    if (hasKeysOfPower(light))
+      throw Error(fmt::format("light '{}' has keys of its power; expected an edit of another light, or off",
+                              light.name));
+    light.power = found->second;
+  }
   for (Medium& medium : result.media)
     if (const auto found = edits.media.find(medium.name); found != edits.media.end()) {
       medium.extinction = found->second.extinction.value_or(medium.extinction);

@@ -51,8 +51,12 @@ struct EditableLight {
   std::string name;
   bool area = false;
   glm::vec3 power{0.0f};
+  bool keyed = false;  ///< its power is that of keys, and cannot be edited
 };
 std::vector<EditableLight> editableLights(const Scene& scene);
+/// Whether its place is that of keys or rates, which cannot be edited; and the same of its fov.
+bool moves(const Camera& camera);
+bool hasKeysOfFov(const Camera& camera);
 /// Materials without duplicate names, with their own emission instead of an area light's.
 std::vector<Material> editableMaterials(const Scene& scene);
 

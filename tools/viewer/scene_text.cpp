@@ -89,7 +89,10 @@ class SceneText {
   void writeLight(const EditableLight& light) {
     const bool off = edits_.off.count("light " + light.name) != 0;
     const auto power = edits_.powers.find(light.name);
-    if (off && !light.area) return remove("light", light.name);
+    if (off && !light.area) {
+      remove("light", light.name);
+      return removeAnimation(light.name);
+    }
     if (!off && power == edits_.powers.end()) return;
     dsl::Block& text = block("light", light.name);
     const std::string kind = text.header.back().text;
@@ -100,6 +103,10 @@ class SceneText {
                                       : kind == "directional" ? "irradiance"
                                                               : "intensity",
                                       off ? "0" : numbers(power->second)));
+  }
+
+  void removeAnimation(const std::string& name) {
+    std::erase_if(*items_, [&](const dsl::Item& item) { return isCalled(item, "animate", name); });
   }
 
   void writeMedium(const std::string& name, const MediumEdit& edit) {
@@ -205,6 +212,7 @@ class SceneText {
                                    camera.fov, camera.width, camera.height);
     if (camera.aperture > 0.0) text += fmt::format("aperture {}\nfocus {}\n", camera.aperture, camera.focus);
     std::erase_if(*items_, [](const dsl::Item& item) { return isCalled(item, "camera", "view"); });
+    removeAnimation("view");  // the camera stands still
     items_->insert(items_->begin(), itemOf(text + "}"));
   }
 
@@ -239,7 +247,8 @@ std::string differenceOf(const Scene& a, const Scene& b) {
     return "the environment";
   if (a.lights.size() != b.lights.size()) return "the lights";
   for (std::size_t i = 0; i < a.lights.size(); ++i)
-    if (a.lights[i].power != b.lights[i].power) return "light " + a.lights[i].name;
+    if (a.lights[i].power != b.lights[i].power || a.lights[i].motion != b.lights[i].motion)
+      return "light " + a.lights[i].name;
   if (a.media.size() != b.media.size()) return "the media";
   for (std::size_t i = 0; i < a.media.size(); ++i)
     if (a.media[i].extinction != b.media[i].extinction || a.media[i].albedo != b.media[i].albedo ||

@@ -21,7 +21,6 @@ Word wordOf(const std::vector<std::string>& words, const std::string& text) {
 void Session::freeCamera(const std::function<Camera(Camera)>& change) {
   Camera camera = change(cameraOf(state_, *edited_));
   camera.name = "view";
-  camera.keys.clear();
   // Many small steps could lead beyond the limit of a single statement.
   for (const glm::dvec3& place : {camera.eye, camera.target})
     for (int axis = 0; axis < 3; ++axis)

@@ -5,6 +5,8 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "lumivox/scene/free_camera.h"
+
 namespace lumivox::viewer {
 namespace {
 
@@ -42,19 +44,7 @@ const std::vector<std::string>& curveWords() {
 
 Camera cameraOf(const ViewState& state, const Scene& scene) {
   if (state.free) return *state.free;
-  Camera camera = scene.camera(state.camera);
-  if (camera.keys.empty()) return camera;
-  const auto next = std::find_if(camera.keys.begin(), camera.keys.end(),
-                                 [&](const CameraKey& key) { return key.time > state.time; });
-  const CameraKey& after = next == camera.keys.end() ? camera.keys.back() : *next;
-  const CameraKey& before = next == camera.keys.begin() ? after : *(next - 1);
-  const double weight = after.time > before.time
-                            ? std::clamp((state.time - before.time) / (after.time - before.time), 0.0, 1.0)
-                            : 0.0;
-  camera.eye = glm::mix(before.eye, after.eye, weight);
-  camera.target = glm::mix(before.target, after.target, weight);
-  camera.keys.clear();
-  return camera;
+  return cameraAt(scene.camera(state.camera), state.time);
 }
 
 Camera moved(Camera camera, const glm::dvec3& by) {

@@ -110,17 +110,40 @@ void explainVariants(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
+/// What changes with time in a scene, by name: a few of each kind. Empty if nothing does.
+std::string whatMoves(const Seen& seen) {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> parts;
+  const auto add = [&](const char* one, const char* many, const auto& all, const auto& moves) {
+    std::vector<std::string> names;
+    for (const auto& each : all)
+      if (moves(each)) names.push_back(fmt::format("'{}'", each.name));
+    if (names.empty()) return;
+    const std::size_t more = names.size() - std::min(names.size(), kMostNamed);
+    names.resize(names.size() - more);
+    parts.push_back(fmt::format("{} {}{}", names.size() == 1 ? one : many, fmt::join(names, ", "),
+                                more > 0 ? fmt::format(" and {} more", more) : ""));
+  };
+  add("light", "lights", seen.scene.lights, [](const Light& light) { return light.motion.has_value(); });
+  add("camera", "cameras", seen.scene.cameras,
+      [](const Camera& camera) { return camera.keys.size() > 1 || camera.motion; });
+  add("object", "objects", seen.scene.objects,
+      [](const Object& object) { return object.animated() && !object.parts.empty(); });
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 /// Kept passes that do not run again in later frames of this scene.
 void explainTime(const ExplainedRun& run, Explanation& explanation) {
+  const std::string moving = whatMoves(run.seen);
   for (const int index : run.plan.order) {
     const PassPlan& plan = run.plan.passes[static_cast<std::size_t>(index)];
     const BoundPass& pass = run.graph.passes[static_cast<std::size_t>(index)];
     if ((static_cast<std::uint32_t>(plan.dependsOn) & static_cast<std::uint32_t>(run.plan.mayChange)) != 0)
       continue;
-    LeftOut leftOut{
-        LeftOut::Level::time, passText(pass) + " in later frames",
-        fmt::format("it depends on {}, which this scene does not change", readsText(plan.dependsOn)),
-        pass.name};
+    LeftOut leftOut{LeftOut::Level::time, passText(pass) + " in later frames",
+                    fmt::format("it depends on {}, which this scene does not change{}",
+                                readsText(plan.dependsOn), moving.empty() ? "" : "; what moves: " + moving),
+                    pass.name};
     if (const auto ms = run.passMs.find(index); ms != run.passMs.end()) leftOut.savedMs = ms->second;
     explanation.leftOut.push_back(std::move(leftOut));
   }

@@ -153,7 +153,8 @@ Reads whatMayChange(const PruneRequest& request) {
     return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | Reads::capture | histories;
   Reads result = Reads::time | histories;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
-  if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
+  if (request.traits.movingLights || (request.traits.movingGeometry && request.traits.areaLights > 0))
+    result = result | Reads::lights;
   if (request.traits.movingCamera) result = result | camera;
   if (request.traits.movingCaptures) result = result | Reads::capture;
   return result;

@@ -10,6 +10,7 @@
 #include "lumivox/dsl/schema.h"
 #include "lumivox/scene/medium.h"
 #include "lumivox/scene/text.h"
+#include "scene/animation_text.h"
 #include "scene/block_reader.h"
 
 namespace lumivox {
@@ -20,7 +21,6 @@ using dsl::BlockSpecification;
 using dsl::CheckedBlock;
 using dsl::Property;
 
-constexpr double kNearestTarget = 1e-9;     // m
 constexpr double kSmallestParticle = 1e-6;  // m; the volume of smaller ones underflows single precision
 
 const BlockSpecification& specificationOf(const BlockSpecification& outer, const std::string& word) {
@@ -55,6 +55,12 @@ class Reader : private BlockReader {
         readFiles(*item.block);
       if (item.block->word == "mesh" && !result_.meshes.empty() && findings_.size() > before)
         result_.meshes.back().isSound = false;
+    }
+    // What they name may stand behind them.
+    for (const Block* animation : animations_) {
+      const BlockSpecification& grammar = specificationOf(grammar_, "animate");
+      describeAnimation(*this, checked(*animation), specificationOf(grammar, "key"),
+                        targetOf(animation->header.front().text), result_);
     }
     return std::move(result_);
   }
@@ -105,17 +111,58 @@ class Reader : private BlockReader {
         if (item.property->word == "material") materialNames_.add(name);
         if (item.property->word == "mesh") meshNames_.add(name);
         if (item.property->word == "capture") captureNames_.add(name);
+        if (item.property->word == "camera") cameraNames_.add(name);
       }
       if (!item.block) continue;
       // A misspelt block has its own finding, but its name counts as known.
       std::string word = item.block->word;
       if (!known(grammar_, *item.block))
-        word = suggestionFor(findings_, word, {"material", "mesh", "capture"});
-      if (word != "material" && word != "mesh" && word != "capture") continue;
-      const std::string name = CheckedBlock(*item.block, specificationOf(grammar_, word)).name();
-      if (!name.empty())
-        (word == "material" ? materialNames_ : word == "mesh" ? meshNames_ : captureNames_).add(name);
+        word = suggestionFor(findings_, word, {"material", "mesh", "capture", "light", "camera"});
+      Names* names = word == "material"  ? &materialNames_
+                     : word == "mesh"    ? &meshNames_
+                     : word == "capture" ? &captureNames_
+                     : word == "camera"  ? &cameraNames_
+                     : word == "light"   ? &lightNames_
+                                         : nullptr;
+      if (names == nullptr) continue;
+      const CheckedBlock block(*item.block, specificationOf(grammar_, word));
+      if (names == &lightNames_ && block.kind() == "area") names = &areaLightNames_;
+      if (!block.name().empty()) names->add(block.name());
     }
+  }
+
+  /// `nothing` for an unknown name, and for one of two things.
+  AnimationTarget targetOf(const std::string& name) const {
+    const bool mesh = meshNames_.known.contains(meshOf(name)), light = lightNames_.known.contains(name),
+               camera = cameraNames_.known.contains(name);
+    if (mesh + light + camera != 1) return AnimationTarget::nothing;
+    return mesh ? AnimationTarget::mesh : light ? AnimationTarget::light : AnimationTarget::camera;
+  }
+
+  void checkAnimationTarget(const PlacedText& target) {
+    if (targetOf(target.text) != AnimationTarget::nothing) return;
+    Names all;
+    std::vector<std::string> kinds;
+    const auto add = [&](const Names& names, const char* kind, const std::string& name) {
+      for (const std::string& one : names.inOrder) all.add(one);
+      if (names.known.contains(name)) kinds.emplace_back(kind);
+    };
+    add(meshNames_, "a mesh", meshOf(target.text));
+    add(lightNames_, "a light", target.text);
+    add(cameraNames_, "a camera", target.text);
+    if (!kinds.empty())
+      report(target.place, target.length,
+             fmt::format("'{}' is the name of {}", target.text, fmt::join(kinds, " and of ")),
+             "a name that only one of them has");
+    else if (areaLightNames_.known.contains(target.text))
+      report(
+          target.place, target.length,
+          fmt::format("'{}' is an area light: it moves with its mesh, and its radiance stays", target.text),
+          "animate MESH; light that changes with time is that of point, spot and directional lights");
+    else if (meshOf(target.text) != target.text)
+      checkMeshName(target);  // MESH/OBJECT
+    else
+      requireKnown(all, "mesh, light or camera", target.text, target);
   }
 
   /// Checks the names of meshes, materials and captures that a block uses, even if it has other errors.
@@ -140,7 +187,7 @@ class Reader : private BlockReader {
       if (const auto path = nameIn(outer.find("mesh"))) checkMeshName(*path);
     } else if (block.word == "animate" && !block.header.empty()) {
       const dsl::Value& target = block.header.front();
-      checkMeshName({target.text, target.place, target.length});
+      checkAnimationTarget({target.text, target.place, target.length});
     }
   }
 
@@ -152,7 +199,7 @@ class Reader : private BlockReader {
     if (block.word == "light") readLight(checkedBlock);
     if (block.word == "environment") readEnvironment(checkedBlock);
     if (block.word == "medium") readMedium(checkedBlock);
-    if (block.word == "animate") readAnimation(checkedBlock);
+    if (block.word == "animate") animations_.push_back(&block);
     if (block.word != "capture") return;
     if (auto capture = describeCapture(*this, checkedBlock)) result_.captures.push_back(std::move(*capture));
   }
@@ -204,36 +251,31 @@ class Reader : private BlockReader {
     }
     readLens(block, camera);
     const BlockSpecification& keyGrammar = specificationOf(specificationOf(grammar_, "camera"), "key");
-    for (const Block* keyBlock : block.blocks("key")) {
-      const CheckedBlock key(*keyBlock, keyGrammar);
-      const CameraKey next{key.number("time", 0), vector(key, "eye", camera.eye),
-                           vector(key, "target", camera.target)};
-      if (!camera.keys.empty() && next.time <= camera.keys.back().time) {
-        report(*key.find("time"), "keys run backwards in time",
-               fmt::format("a time after {} s", camera.keys.back().time));
-      }
-      checkView(*keyBlock, next.eye, next.target, camera.up);
-      camera.keys.push_back(next);
+    const std::vector<const Block*> keys = block.blocks("key");
+    bool isWhole = true;
+    for (const char* word : {"eye", "target"}) {
+      if (block.has(word) || std::any_of(keys.begin(), keys.end(), [&](const Block* key) {
+            return CheckedBlock(*key, keyGrammar).has(word);
+          }))
+        continue;
+      isWhole = false;
+      report(block.block().place, static_cast<int>(block.block().word.size()),
+             fmt::format("block '{}' lacks the property '{}'", block.block().title(), word),
+             fmt::format("{} X Y Z, or key blocks", word));
     }
-    if (camera.keys.empty()) {
-      for (const char* word : {"eye", "target"}) {
-        if (block.has(word)) continue;
-        report(block.block().place, static_cast<int>(block.block().word.size()),
-               fmt::format("block '{}' lacks the property '{}'", block.block().title(), word),
-               fmt::format("{} X Y Z, or key blocks", word));
-      }
-      if (block.has("eye") && block.has("target"))
-        checkView(block.block(), camera.eye, camera.target, camera.up);
-    } else {
-      camera.eye = camera.keys.front().eye;
-      camera.target = camera.keys.front().target;
+    if (isWhole && keys.empty()) checkView(*this, block.block(), camera.eye, camera.target, camera.up);
+    if (isWhole) readCameraKeys(*this, block, keyGrammar, camera);
+    if (!camera.keys.empty()) {
+      const bool linear = camera.interpolation == Interpolation::linear;
+      if (linear || !block.has("eye")) camera.eye = camera.keys.front().eye;
+      if (linear || !block.has("target")) camera.target = camera.keys.front().target;
     }
     result_.cameras.push_back(std::move(camera));
   }
 
   /// A size of 0 means that of the capture's frames.
   void readCapturedView(const CheckedBlock& block, Camera& camera) {
-    for (const char* word : {"eye", "target", "up", "fov", "aperture", "focus"}) {
+    for (const char* word : {"eye", "target", "up", "fov", "aperture", "focus", "interpolation"}) {
       if (const Property* property = block.find(word))
         report(*property, fmt::format("'{}' of a camera that stands where a capture's stood", word),
                "capture NAME and resolution alone");
@@ -257,18 +299,6 @@ class Reader : private BlockReader {
     if (block.has("focus") && !block.has("aperture"))
       report(*block.find("focus"), "'focus' without an aperture: a pinhole has everything in focus",
              "aperture DIAMETER, such as aperture 5 cm");
-  }
-
-  void checkView(const Block& block, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
-    const glm::dvec3 forward = target - eye;
-    const int length = static_cast<int>(block.word.size());
-    if (glm::length(forward) < kNearestTarget) {
-      report(block.place, length, "eye and target are the same point",
-             fmt::format("two points, at least {:.6g} m apart", kNearestTarget));
-    } else if (glm::length(glm::cross(glm::normalize(forward), up)) <
-               1e-6) {  // half a thousandth of a pixel of roll
-      report(block.place, length, "the camera looks along 'up'", "another up direction, such as 0 0 1");
-    }
   }
 
   void readMaterial(const CheckedBlock& block) {
@@ -491,27 +521,11 @@ class Reader : private BlockReader {
     }
   }
 
-  void readAnimation(const CheckedBlock& block) {
-    AnimationText animation;
-    const dsl::Value& target = block.block().header.front();
-    animation.target = {target.text, target.place, target.length};
-    if (!block.has("rotate") && !block.has("translate")) {
-      report(block.block().place, static_cast<int>(block.block().word.size()), "the animation moves nothing",
-             "rotate AXIS SPEED, translate VELOCITY or both");
-    }
-    if (block.has("rotate")) {
-      animation.motion.axis = direction(block, "rotate", {0, 1, 0});
-      animation.motion.angularSpeed = block.numbers("rotate", {}).at(3);
-    }
-    animation.motion.velocity = vector(block, "translate", glm::dvec3(0));
-    animation.hasPivot = block.has("about");
-    animation.motion.pivot = vector(block, "about", glm::dvec3(0));
-    result_.animations.push_back(std::move(animation));
-  }
-
   const BlockSpecification& grammar_;
   SceneDescription result_;
-  Names materialNames_, meshNames_, captureNames_;
+  Names materialNames_, meshNames_, captureNames_, cameraNames_;
+  Names lightNames_, areaLightNames_;  ///< without and with extent
+  std::vector<const Block*> animations_;
 };
 
 }  // namespace

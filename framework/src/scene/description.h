@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,7 @@ struct AreaLightText {
   glm::vec3 radiance{0.0f};
 };
 
+/// Motion of a mesh or of objects. Lights and cameras hold theirs.
 struct AnimationText {
   PlacedText target;
   RigidMotion motion;
@@ -103,6 +105,7 @@ struct SceneDescription {
   EnvironmentText environmentMap;
   std::vector<MediumText> media;
   std::vector<AnimationText> animations;
+  std::set<std::string> animatedCameras;  ///< by blocks `animate`
   std::vector<CaptureText> captures;
 };
 

@@ -8,12 +8,12 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <numbers>
 #include <span>
 
 #include "lumivox/base/error.h"
 #include "lumivox/scene/free_camera.h"
 #include "lumivox/scene/scene.h"
+#include "scene/motion.h"
 
 namespace lumivox {
 namespace {
@@ -163,16 +163,6 @@ Bounds gridBounds(const Scene& scene, double time, const glm::dvec3& origin) {
   return bounds;
 }
 
-glm::dmat4 motionAt(const Object& object, double time) {
-  if (!object.motion) return object.placement;
-  const RigidMotion& motion = *object.motion;
-  glm::dmat4 result = glm::translate(glm::dmat4(1.0), motion.pivot + motion.velocity * time);
-  // Whole turns are left out first, so that late times lose no precision.
-  const double angle = std::remainder(motion.angularSpeed * time, 2.0 * std::numbers::pi);
-  result = glm::rotate(result, angle, motion.axis);
-  return glm::translate(result, -motion.pivot) * object.placement;
-}
-
 /// The vertices of a deforming object: linear between the two frames around the time.
 void deform(const VertexSequence& sequence, double time, ObjectState& state) {
   const auto count = static_cast<double>(sequence.positions.size());
@@ -214,19 +204,9 @@ CameraView viewOf(const Capture& capture, const CaptureState& state, int width, 
   return view;
 }
 
-CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, int width, int height) {
-  glm::dvec3 eye = camera.eye, target = camera.target;
-  if (!camera.keys.empty()) {
-    const auto next = std::find_if(camera.keys.begin(), camera.keys.end(),
-                                   [&](const CameraKey& key) { return key.time > time; });
-    const CameraKey& after = next == camera.keys.end() ? camera.keys.back() : *next;
-    const CameraKey& before = next == camera.keys.begin() ? after : *(next - 1);
-    const double weight = after.time > before.time
-                              ? std::clamp((time - before.time) / (after.time - before.time), 0.0, 1.0)
-                              : 0.0;
-    eye = glm::mix(before.eye, after.eye, weight);
-    target = glm::mix(before.target, after.target, weight);
-  }
+CameraView viewOf(const Camera& moving, double time, const glm::dvec3& origin, int width, int height) {
+  const Camera camera = cameraAt(moving, time);
+  const glm::dvec3 &eye = camera.eye, &target = camera.target;
   // The text's check covers the keys only, not the views between them.
   if (eye == target)
     throw Error(fmt::format("camera '{}': eye and target are the same point at {} s; expected two points",
@@ -385,7 +365,8 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
   snapshot.objects.reserve(scene.objects.size());
   for (const Object& object : scene.objects) {
     ObjectState& state = snapshot.objects.emplace_back();
-    const glm::dmat4 toWorld = motionAt(object, time);
+    const glm::dmat4 toWorld =
+        object.motion ? rigidMotionAt(*object.motion, time) * object.placement : object.placement;
     const glm::dmat4 toLocal = glm::translate(glm::dmat4(1.0), -snapshot.origin) * toWorld;
     state.toWorld = glm::mat4(toLocal);
     state.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(toLocal))));
@@ -413,7 +394,8 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
   } else {
     snapshot.camera = viewOf(camera, time, snapshot.origin, wide, high);
   }
-  for (const Light& light : scene.lights) {
+  for (const Light& moving : scene.lights) {
+    const Light light = lightAt(moving, time);
     snapshot.lights.push_back({light.kind, glm::vec3(light.position - snapshot.origin),
                                glm::vec3(glm::normalize(light.direction)), light.power, light.innerAngle,
                                light.outerAngle});

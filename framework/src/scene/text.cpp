@@ -1,6 +1,7 @@
 #include "lumivox/scene/text.h"
 
 #include <numbers>
+#include <string_view>
 
 #include "scene/limits.h"
 
@@ -69,17 +70,91 @@ BlockSpecification block(const char* word, HeaderUse name, const char* meaning,
   return result;
 }
 
+Row position(const char* meaning) {
+  return Row("position", PropertyType::vector3, meaning, dsl::kLength).within(kFarthestPlace);
+}
+
+Row lightDirection() {
+  return Row("direction", PropertyType::vector3, "the way the light travels").within(kFarthestPlace);
+}
+
+Row intensity() {
+  return Row("intensity", PropertyType::oneOrThree, "radiant intensity in W/sr").upTo(kMostLight);
+}
+
+Row irradiance() {
+  return Row("irradiance", PropertyType::oneOrThree,
+             "irradiance on a plane perpendicular to the light, in W/m^2")
+      .upTo(kMostLight);
+}
+
+/// Of a spot light.
+Row halfAngle(const char* word) {
+  return Row(word, PropertyType::number,
+             std::string_view(word) == "inner" ? "half angle from the axis up to which the intensity is full"
+                                               : "half angle from the axis where the light ends",
+             dsl::kAngle)
+      .between(0, 90.0 * kDegree);
+}
+
+Row fov() {
+  return Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
+      .between(0.1 * kDegree, 179.0 * kDegree);
+}
+
+Row interpolation() {
+  Row row(
+      "interpolation", PropertyType::word,
+      "how keys are joined: linearly (directions are then scaled to unit length), and before the first key "
+      "the value is the first key's; or by steps, and before the first key the value is the block's own");
+  row.specification.choices = {"linear", "step"};
+  return row.byDefault("linear");
+}
+
+/// A key: the values that it sets at a time.
+BlockSpecification key(const char* meaning, const std::vector<PropertySpecification>& values) {
+  BlockSpecification result = block(
+      "key", HeaderUse::none, meaning,
+      {Row("time", PropertyType::number, "when the values hold; later than in the key before", dsl::kTime)
+           .within(kLongestTime)
+           .required()});
+  result.properties.insert(result.properties.end(), values.begin(), values.end());
+  return result;
+}
+
+std::vector<PropertySpecification> cameraValues() {
+  return {Row("eye", PropertyType::vector3, "where a camera is", dsl::kLength).within(kFarthestPlace),
+          Row("target", PropertyType::vector3, "where a camera looks", dsl::kLength).within(kFarthestPlace),
+          fov()};
+}
+
+BlockSpecification animate() {
+  std::vector<PropertySpecification> values{position("where a point or spot light is"),
+                                            lightDirection(),
+                                            irradiance(),
+                                            intensity(),
+                                            halfAngle("inner"),
+                                            halfAngle("outer")};
+  for (const PropertySpecification& value : cameraValues()) values.push_back(value);
+  BlockSpecification result = block(
+      "animate", HeaderUse::required,
+      "motion of MESH, MESH/OBJECT, a light or a camera: keys of a light's or a camera's values, then a "
+      "turn about a point and a way along a line; an area light moves with its mesh",
+      {Row("rotate", PropertyType::axisAndNumber, "axis and angular speed", dsl::kAngularSpeed)
+           .within(kLargestTurn * kDegree),
+       Row("translate", PropertyType::vector3, "velocity", dsl::kSpeed).within(kFastest),
+       Row("about", PropertyType::vector3,
+           "a point on the axis; without it the centre of the bounds of a mesh, the position in a light's "
+           "block, the eye in a camera's",
+           dsl::kLength)
+           .within(kFarthestPlace),
+       interpolation()});
+  result.blocks = {
+      key("what a light or a camera is at a time; keys that do not set a value are passed over", values)};
+  return result;
+}
+
 BlockSpecification camera() {
-  BlockSpecification key =
-      block("key", HeaderUse::none,
-            "a point of the camera's path; between keys eye and target move linearly, outside they stay",
-            {Row("time", PropertyType::number, "when the camera is there", dsl::kTime)
-                 .within(kLongestTime)
-                 .required(),
-             Row("eye", PropertyType::vector3, "where it is", dsl::kLength).within(kFarthestPlace).required(),
-             Row("target", PropertyType::vector3, "where it looks", dsl::kLength)
-                 .within(kFarthestPlace)
-                 .required()});
   BlockSpecification result = block(
       "camera", HeaderUse::required,
       "a camera with square pixels, a pinhole or a thin lens; the first one is used unless another is asked for",
@@ -94,9 +169,7 @@ BlockSpecification camera() {
        Row("capture", PropertyType::name,
            "a capture: the camera stands where its depth camera stood and sees as high; instead of eye, target, "
            "up, fov, lens and keys"),
-       Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
-           .between(0.1 * kDegree, 179.0 * kDegree)
-           .byDefault("40 deg"),
+       fov().byDefault("40 deg"),
        Row("resolution", PropertyType::resolution,
            "width and height of the image in pixels; of a camera of a capture: of the capture's pictures unless given")
            .between(1, kLargestImage)
@@ -108,8 +181,10 @@ BlockSpecification camera() {
        Row("focus", PropertyType::number,
            "distance of the plane in focus along the view axis; required with an aperture above 0",
            dsl::kLength)
-           .between(kNearestFocus, kFarthestFocus)});
-  result.blocks = {key};
+           .between(kNearestFocus, kFarthestFocus),
+       interpolation()});
+  result.blocks = {
+      key("a point of the camera's path; keys that do not set a value are passed over", cameraValues())};
   result.required = true;
   return result;
 }
@@ -185,15 +260,6 @@ BlockSpecification light() {
   BlockSpecification result =
       block("light", HeaderUse::optional, "a light source; emissive materials are light sources too", {});
   result.kinds = {"area", "directional", "point", "spot"};
-  const PropertySpecification position =
-      Row("position", PropertyType::vector3, "where it is", dsl::kLength).within(kFarthestPlace).required();
-  const PropertySpecification direction =
-      Row("direction", PropertyType::vector3, "the way the light travels").within(kFarthestPlace).required();
-  const PropertySpecification intensity =
-      Row("intensity", PropertyType::oneOrThree, "radiant intensity in W/sr").upTo(kMostLight).required();
-  const auto halfAngle = [](const char* word, const char* meaning) {
-    return Row(word, PropertyType::number, meaning, dsl::kAngle).between(0, 90.0 * kDegree).required();
-  };
   result.kindProperties = {
       {"area",
        {Row("mesh", PropertyType::name, "MESH or MESH/OBJECT whose triangles shine from their front sides")
@@ -201,16 +267,11 @@ BlockSpecification light() {
         Row("radiance", PropertyType::oneOrThree, "emitted radiance in W/(sr m^2)")
             .upTo(kMostLight)
             .required()}},
-      {"directional",
-       {direction, Row("irradiance", PropertyType::oneOrThree,
-                       "irradiance on a plane perpendicular to the light, in W/m^2")
-                       .upTo(kMostLight)
-                       .required()}},
-      {"point", {position, intensity}},
+      {"directional", {lightDirection().required(), irradiance().required()}},
+      {"point", {position("where it is").required(), intensity().required()}},
       {"spot",
-       {position, direction, intensity,
-        halfAngle("inner", "half angle from the axis up to which the intensity is full"),
-        halfAngle("outer", "half angle from the axis where the light ends")}}};
+       {position("where it is").required(), lightDirection().required(), intensity().required(),
+        halfAngle("inner").required(), halfAngle("outer").required()}}};
   return result;
 }
 
@@ -324,19 +385,10 @@ std::vector<BlockSpecification> makeSpecifications() {
            .between(1e-12, kMostLight)
            .byDefault("1")});
   environment.repeatable = false;
-  BlockSpecification animate =
-      block("animate", HeaderUse::required,
-            "rigid motion of MESH or MESH/OBJECT: turns about a point while it moves along a line",
-            {Row("rotate", PropertyType::axisAndNumber, "axis and angular speed", dsl::kAngularSpeed)
-                 .within(kLargestTurn * kDegree),
-             Row("translate", PropertyType::vector3, "velocity", dsl::kSpeed).within(kFastest),
-             Row("about", PropertyType::vector3,
-                 "a point on the axis; without it the centre of the bounds of what moves", dsl::kLength)
-                 .within(kFarthestPlace)});
   BlockSpecification scene =
       block("scene", HeaderUse::required,
             "a scene: metres, seconds, Y up, right-handed; all light is linear, in Rec. 709 primaries", {});
-  scene.blocks = {camera(), material(), mesh(), light(), environment, medium(), animate, capture()};
+  scene.blocks = {camera(), material(), mesh(), light(), environment, medium(), animate(), capture()};
   scene.repeatable = false;
   scene.required = true;
   return {scene};

@@ -22,19 +22,30 @@ void add(Hasher& hasher, const glm::dvec3& value) {
   hasher.add(value.x).add(value.y).add(value.z);
 }
 
+void add(Hasher& hasher, const RigidMotion& motion) {
+  add(hasher, motion.axis);
+  hasher.add(motion.angularSpeed);
+  add(hasher, motion.pivot);
+  add(hasher, motion.velocity);
+}
+
+template <class Value>
+void add(Hasher& hasher, const std::optional<Value>& value) {
+  hasher.add(value.has_value());
+  if (!value) return;
+  if constexpr (std::is_arithmetic_v<Value>)
+    hasher.add(*value);
+  else
+    add(hasher, *value);
+}
+
 void add(Hasher& hasher, const Object& object) {
   hasher.add(object.firstVertex).add(object.vertexCount).add(std::uint64_t{object.parts.size()});
   for (const Part& part : object.parts) hasher.add(part.material).add(part.firstIndex).add(part.indexCount);
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) hasher.add(object.placement[column][row]);
   }
-  hasher.add(object.motion.has_value());
-  if (object.motion) {
-    add(hasher, object.motion->axis);
-    hasher.add(object.motion->angularSpeed);
-    add(hasher, object.motion->pivot);
-    add(hasher, object.motion->velocity);
-  }
+  add(hasher, object.motion);
   hasher.add(object.sequence.has_value());
   if (object.sequence) {
     hasher.add(object.sequence->framesPerSecond).add(object.sequence->loop);
@@ -58,6 +69,17 @@ void add(Hasher& hasher, const Light& light) {
   add(hasher, light.direction);
   add(hasher, light.power);
   hasher.add(light.innerAngle).add(light.outerAngle);
+  if (!light.motion) return;
+  hasher.add("motion").add(light.motion->interpolation).add(std::uint64_t{light.motion->keys.size()});
+  add(hasher, light.motion->rigid);
+  for (const LightKey& key : light.motion->keys) {
+    hasher.add(key.time);
+    add(hasher, key.position);
+    add(hasher, key.direction);
+    add(hasher, key.power);
+    add(hasher, key.innerAngle);
+    add(hasher, key.outerAngle);
+  }
 }
 
 void add(Hasher& hasher, const Camera& camera) {
@@ -71,7 +93,12 @@ void add(Hasher& hasher, const Camera& camera) {
     hasher.add(key.time);
     add(hasher, key.eye);
     add(hasher, key.target);
+    if (key.fov) hasher.add("fov").add(*key.fov);
   }
+  if (camera.interpolation != Interpolation::linear) hasher.add("step");
+  if (!camera.motion) return;
+  hasher.add("motion");
+  add(hasher, *camera.motion);
 }
 
 void add(Hasher& hasher, const Medium& medium) {

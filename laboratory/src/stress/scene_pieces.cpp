@@ -38,17 +38,29 @@ class Mover {
     object.placement = matrix * object.placement;
     object.placedBounds.reset();
     object.sweptBounds.reset();
-    if (!object.motion) return;
-    object.motion->axis = direction(object.motion->axis);
-    object.motion->pivot = point(object.motion->pivot);
-    object.motion->velocity = path(object.motion->velocity);
+    if (object.motion) move(*object.motion);
+  }
+
+  void move(RigidMotion& motion) const {
+    motion.axis = direction(motion.axis);
+    motion.pivot = point(motion.pivot);
+    motion.velocity = path(motion.velocity);
   }
 
   void move(Light& light) const {
     light.position = point(light.position);
     light.direction = direction(light.direction);
     // Radiance is intensity over squared distance; irradiance of a parallel light knows no distance.
-    if (light.kind != LightKind::directional) light.power *= static_cast<float>(by_.scale * by_.scale);
+    const float power =
+        light.kind == LightKind::directional ? 1.0f : static_cast<float>(by_.scale * by_.scale);
+    light.power *= power;
+    if (!light.motion) return;
+    if (light.motion->rigid) move(*light.motion->rigid);
+    for (LightKey& key : light.motion->keys) {
+      if (key.position) key.position = point(*key.position);
+      if (key.direction) key.direction = direction(*key.direction);
+      if (key.power) *key.power *= power;
+    }
   }
 
   void move(Camera& camera) const {
@@ -59,6 +71,7 @@ class Mover {
       key.eye = point(key.eye);
       key.target = point(key.target);
     }
+    if (camera.motion) move(*camera.motion);
   }
 
   void move(Medium& medium) const {
@@ -106,7 +119,12 @@ Scene moved(const Scene& scene, const Similarity& by) {
 Scene brighter(const Scene& scene, float factor) {
   Scene result = scene;
   result.hash = {};
-  for (Light& light : result.lights) light.power *= factor;
+  for (Light& light : result.lights) {
+    light.power *= factor;
+    if (!light.motion) continue;
+    for (LightKey& key : light.motion->keys)
+      if (key.power) *key.power *= factor;
+  }
   for (Material& material : result.materials) material.emission *= factor;
   result.environment *= factor;
   if (scene.environmentMap) {
