@@ -4,6 +4,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/image.h"
 #include "lumivox/scene/scene.h"
+#include "scene/octahedral_environment.h"
 #include "support/facts.h"
 #include "support/support.h"
 
@@ -200,4 +201,53 @@ TEST_CASE("a damaged Radiance image is refused with the file and what is wrong")
   says(header + std::string("\x02\x02\x00\x0a\x8b\x80", 6), "a run in row 1 has 11 of 10 values");
   says(header + std::string("\x02\x02\x00\x0a\x00\x80", 6), "a run in row 1 has 0 of 10 values");
   says(header + std::string("\x01\x01\x01\x05", 4), "goes beyond its end");
+}
+
+TEST_CASE("levels by direction keep the mean of a map, and each texel the mean of its directions") {
+  EnvironmentMap map;
+  map.width = 64, map.height = 32;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x)
+      map.radiance.push_back(
+          glm::vec3(1.0f) + 0.9f * map.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+  map.toMap = glm::mat3(glm::vec3(0, 0, 1), glm::vec3(0, 1, 0), glm::vec3(-1, 0, 0));
+  map.finish();
+  const OctahedralEnvironment levels(map);
+  CHECK(levels.side() == 32);
+  CHECK(levels.levels() == 6);
+  REQUIRE(levels.radiance().size() == 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1);
+  const glm::vec3 coarsest = levels.radiance().back(), mean = map.mean();
+  for (int c = 0; c < 3; ++c) CHECK(coarsest[c] == Approx(mean[c]).epsilon(1e-5));
+  // The middle of a texel of the finest level, unfolded.
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const float u = (static_cast<float>(x) + 0.5f) / 16.0f - 1.0f,
+                  v = (static_cast<float>(y) + 0.5f) / 16.0f - 1.0f;
+      glm::vec3 d(u, v, 1.0f - std::abs(u) - std::abs(v));
+      if (d.z < 0.0f)
+        d = glm::vec3(std::copysign(1.0f - std::abs(v), u), std::copysign(1.0f - std::abs(u), v), d.z);
+      const glm::vec3 inMap = map.toMap * glm::normalize(d);
+      for (int c = 0; c < 3; ++c)
+        CHECK(levels.radiance()[static_cast<std::size_t>(y * 32 + x)][c] ==
+              Approx(1.0f + 0.9f * inMap[c]).margin(0.09));
+    }
+}
+
+TEST_CASE("four fifths of the light on the ground of open_air are its sun, which has four texels") {
+  const Scene scene = loadScene(test::sourceDirectory() / "scenes/open_air.scene");
+  REQUIRE(scene.environmentMap != nullptr);
+  const EnvironmentMap& map = *scene.environmentMap;
+  double sun = 0.0, sky = 0.0;
+  int texels = 0;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const double up = map.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f).y;
+      const double light = map.radiance[static_cast<std::size_t>(y * map.width + x)].y;
+      const bool isSun = light > 50.0;
+      texels += isSun;
+      (isSun ? sun : sky) += light * map.solidAngle(y) * std::max(up, 0.0);
+    }
+  CHECK(texels == 4);
+  INFO(sun << " and " << sky << " W/m^2");
+  CHECK(sun / (sun + sky) == Approx(0.8).margin(0.05));
 }

@@ -177,6 +177,27 @@ void exrImage(std::string_view input) {
   });
 }
 
+void hdrImage(std::string_view input) {
+  const LogCapture silent;
+  const fs::path file = folder().write("input.hdr", input);
+  taken([&] {
+    const ImageBuffer image = readHdr(file, kMostEnvironmentTexels);
+    require(image.channels() == 3 && image.pixelCount() > 0, "an image has colours");
+  });
+  const fs::path scene = folder().write(
+      "hdr.scene", "scene \"s\" { camera m { eye 0 0 1 target 0 0 0 } environment { file \"input.hdr\" } }");
+  taken([&] {
+    const Scene loaded = loadScene(scene);
+    for (int c = 0; c < 3; ++c)
+      require(std::isfinite(loaded.environment[c]) && loaded.environment[c] >= 0.0f,
+              "the mean of a map is finite and not negative");
+    if (loaded.environmentMap == nullptr) return;
+    for (const glm::vec3 towards : {glm::vec3(0, 1, 0), glm::vec3(0, -1, 0), glm::vec3(1, 0, 1e-6f)})
+      require(loaded.environmentMap->texelTowards(towards) < loaded.environmentMap->radiance.size(),
+              "every direction has its texel");
+  });
+}
+
 void volumeFile(std::string_view input) {
   const LogCapture silent;
   const fs::path file = folder().write("input.vdb", input);
@@ -309,10 +330,11 @@ void depthPng(std::string_view input) {
 }
 
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{
-      {"scene_text", sceneText},       {"pipeline_text", pipelineText}, {"obj_model", objModel},
-      {"shader_pack", shaderPack},     {"exr_image", exrImage},         {"volume_file", volumeFile},
-      {"capture_texts", captureTexts}, {"sens_file", sensFile},         {"depth_png", depthPng}};
+  static const std::vector<Entry> all{{"scene_text", sceneText},   {"pipeline_text", pipelineText},
+                                      {"obj_model", objModel},     {"shader_pack", shaderPack},
+                                      {"exr_image", exrImage},     {"hdr_image", hdrImage},
+                                      {"volume_file", volumeFile}, {"capture_texts", captureTexts},
+                                      {"sens_file", sensFile},     {"depth_png", depthPng}};
   return all;
 }
 

@@ -22,6 +22,8 @@ void shaderPack(std::string_view input);
 
 /// An EXR image: what a cache of references may hold.
 void exrImage(std::string_view input);
+/// A Radiance image, and the environment map that it makes.
+void hdrImage(std::string_view input);
 /// An OpenVDB file with one grid: the density of a medium.
 void volumeFile(std::string_view input);
 

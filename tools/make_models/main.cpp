@@ -17,6 +17,7 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeCorridor(directory);
     lumivox::models::writeFurnace(directory);
     lumivox::models::writeSkylight(directory);
+    lumivox::models::writeSky(directory);
     lumivox::models::writeQuad(directory);
     lumivox::models::writeBlock(directory);
     lumivox::models::writeWavingCloth(directory);

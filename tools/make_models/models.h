@@ -9,6 +9,7 @@ void writeCornell(const std::filesystem::path& directory);
 void writeCorridor(const std::filesystem::path& directory);
 void writeFurnace(const std::filesystem::path& directory);
 void writeSkylight(const std::filesystem::path& directory);
+void writeSky(const std::filesystem::path& directory);
 void writeQuad(const std::filesystem::path& directory);
 void writeBlock(const std::filesystem::path& directory);
 void writeWavingCloth(const std::filesystem::path& directory);
