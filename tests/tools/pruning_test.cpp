@@ -320,6 +320,23 @@ TEST_CASE("no pass of any pipeline misses that a lamp is switched off") {
   checkReadsOf("switched_lamp.scene", {0.0, 0.05, 0.2});
 }
 
+TEST_CASE(
+    "a lamp that is out leaves none of its light in the next frame: the image of the scene without it") {
+  const Scene scene = loadScene(sourceDirectory() / "scenes/switched_lamp.scene");
+  Scene without = scene;
+  std::erase_if(without.lights, [](const Light& light) { return light.name == "lamp"; });
+  REQUIRE(without.lights.size() == 1);
+  forEachPipeline([&](const Pipeline& text, const RenderOptions& options) {
+    const auto choosesLights = [](const PassText& pass) { return pass.technique == "voxel_path_tracing"; };
+    if (std::any_of(text.passes.begin(), text.passes.end(), choosesLights))
+      return;  // at random among all lights, also dark ones
+    PipelineExecutor switched(device(), techniques(), scene, text, options),
+        unlit(device(), techniques(), without, text, options);
+    switched.render(0.05, 0, PipelineExecutor::Images::no);
+    checkSameOutputs(switched.render(0.2, 1), unlit.render(0.2, 1));
+  });
+}
+
 TEST_CASE("no pass of any pipeline misses that the sun moves") {
   checkReadsOf("moving_sun.scene", {0.0, 0.5});
 }
