@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "base/deflate_limit.h"
 #include "lumivox/base/error.h"
 
 namespace lumivox {
@@ -31,9 +32,7 @@ Deflated Deflated::ofStream(std::string stream, std::uint64_t expandedBytes) {
 }
 
 std::string Deflated::expanded() const {
-  // Deflate expands no byte to more than 1032 (its longest match in the fewest bits).
-  constexpr std::uint64_t kMostExpansion = 1032;
-  if (expandedBytes / kMostExpansion > stream.size())
+  if (expandedBytes / kMostDeflateExpansion > stream.size())
     throw Error(
         fmt::format("deflated data is damaged: {} bytes cannot hold {}", stream.size(), expandedBytes));
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(

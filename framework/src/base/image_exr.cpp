@@ -21,6 +21,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/deflate_limit.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
@@ -150,7 +151,7 @@ std::uint64_t mostExpansion(Imf::Compression compression) {
     case Imf::ZIP_COMPRESSION:
     case Imf::ZIPS_COMPRESSION:
     case Imf::PXR24_COMPRESSION:
-      return 2 * 1032;  // deflate's limit, times two for PXR24
+      return 2 * kMostDeflateExpansion;  // twice for PXR24
     default:
       return std::uint64_t{1} << 17;  // DWA: a deflated mean for every 8 x 8 block
   }

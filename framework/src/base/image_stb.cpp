@@ -8,6 +8,7 @@
 #include <memory>
 #include <string_view>
 
+#include "base/deflate_limit.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
@@ -176,8 +177,7 @@ WordImage decodeGreyPng16(const std::string& file, const std::filesystem::path& 
                          channels, channels == 1 ? "" : "s"));
     const std::uint64_t count =
         static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-    constexpr std::uint64_t kMostExpansion = 1032;  // of deflate, in its longest match
-    if (2 * count / kMostExpansion > bytes.size())
+    if (2 * count / kMostDeflateExpansion > bytes.size())
       refuse(fmt::format("claims {} x {} pixels, more than {} bytes hold", image.width, image.height,
                          bytes.size()));
     requireMemory(count * 6, fmt::format("an image of {} x {} pixels", image.width, image.height));

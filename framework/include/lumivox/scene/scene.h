@@ -101,7 +101,7 @@ enum class LightKind { directional, point, spot };
 enum class Interpolation { linear, step };
 
 /// What a light is at a time. A key sets what it names; a value passes from key to key among those that set
-/// it, and stays at the first and behind the last.
+/// it and stays behind the last. Before the first it is the first's, or by steps the light's own.
 struct LightKey {
   double time = 0.0;  ///< s
   std::optional<glm::dvec3> position, direction;
