@@ -17,9 +17,10 @@
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pipeline.h"
+#include "lumivox/scene/model_animation.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/shader/pack.h"
-#include "scene/obj_model.h"
+#include "scene/model.h"
 #include "scene/volume_file.h"
 
 namespace lumivox::fuzz {
@@ -86,6 +87,34 @@ bool taken(Work&& work) {
   }
 }
 
+/// Loads a model and looks at everything that it promises, also while it moves.
+void loadAndCheck(const fs::path& file) {
+  taken([&] {
+    Hasher hasher;
+    const Model model = loadModel({file}, {}, hasher);
+    require(model.normals.size() == model.positions.size(), "every vertex has a normal");
+    for (const std::uint32_t index : model.indices)
+      require(index < model.positions.size(), "every index has its vertex");
+    for (const ModelObject& object : model.objects)
+      for (const Part& part : object.parts)
+        require(part.material >= 0 && static_cast<std::size_t>(part.material) < model.materials.size(),
+                "every part has its material");
+    for (const ModelObject& object : model.objects) {
+      require(object.firstVertex + object.vertexCount <= model.positions.size(),
+              "objects have their vertices");
+      if (object.animation == nullptr) continue;
+      for (const double time : {-1.0, 0.0, 0.3, 1e9}) {
+        object.animation->placementAt(time);
+        if (!object.animation->deforms()) continue;
+        std::vector<glm::vec3> positions, normals;
+        object.animation->deform(time, positions, normals);
+        require(positions.size() == object.vertexCount && normals.size() == object.vertexCount,
+                "every vertex has its place at every time");
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void sceneText(std::string_view input) {
@@ -115,17 +144,21 @@ void objModel(std::string_view input) {
   const fs::path file = folder().write("model.obj", input.substr(0, split));
   folder().write("model.mtl", split == std::string_view::npos ? std::string_view()
                                                               : input.substr(split + kMaterials.size()));
-  taken([&] {
-    Hasher hasher;
-    const Model model = loadModel({file}, {}, hasher);
-    require(model.normals.size() == model.positions.size(), "every vertex has a normal");
-    for (const std::uint32_t index : model.indices)
-      require(index < model.positions.size(), "every index has its vertex");
-    for (const ModelObject& object : model.objects)
-      for (const Part& part : object.parts)
-        require(part.material >= 0 && static_cast<std::size_t>(part.material) < model.materials.size(),
-                "every part has its material");
-  });
+  loadAndCheck(file);
+}
+
+void gltfModel(std::string_view input) {
+  const LogCapture silent;
+  constexpr std::string_view kBinary = "%%BIN\n";
+  const std::size_t split = input.find(kBinary);
+  folder().write("model.bin",
+                 split == std::string_view::npos ? std::string_view() : input.substr(split + kBinary.size()));
+  loadAndCheck(folder().write("model.gltf", input.substr(0, split)));
+}
+
+void plyModel(std::string_view input) {
+  const LogCapture silent;
+  loadAndCheck(folder().write("model.ply", input));
 }
 
 void shaderPack(std::string_view input) {
@@ -330,11 +363,11 @@ void depthPng(std::string_view input) {
 }
 
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{"scene_text", sceneText},   {"pipeline_text", pipelineText},
-                                      {"obj_model", objModel},     {"shader_pack", shaderPack},
-                                      {"exr_image", exrImage},     {"hdr_image", hdrImage},
-                                      {"volume_file", volumeFile}, {"capture_texts", captureTexts},
-                                      {"sens_file", sensFile},     {"depth_png", depthPng}};
+  static const std::vector<Entry> all{
+      {"scene_text", sceneText},       {"pipeline_text", pipelineText}, {"obj_model", objModel},
+      {"gltf_model", gltfModel},       {"ply_model", plyModel},         {"shader_pack", shaderPack},
+      {"exr_image", exrImage},         {"hdr_image", hdrImage},         {"volume_file", volumeFile},
+      {"capture_texts", captureTexts}, {"sens_file", sensFile},         {"depth_png", depthPng}};
   return all;
 }
 

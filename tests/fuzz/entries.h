@@ -16,6 +16,11 @@ void sceneText(std::string_view input);
 void pipelineText(std::string_view input);
 /// An OBJ file; what follows the first line "%%MTL" is the material file beside it, "model.mtl".
 void objModel(std::string_view input);
+/// A glTF file; one that begins with "glTF" is a .glb. What follows the first line "%%BIN" is the buffer
+/// beside it, "model.bin".
+void gltfModel(std::string_view input);
+/// A PLY file.
+void plyModel(std::string_view input);
 /// A shader pack. After "%%CONTENT\n" comes a content alone, which gets a right header, so that the checksum
 /// hides nothing of what lies behind it.
 void shaderPack(std::string_view input);

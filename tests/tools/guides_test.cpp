@@ -104,6 +104,9 @@ TEST_CASE("every guide with commands is followed, and every rule about them is n
   }
 }
 
+TEST_CASE("the guide to own models is followed") {
+  follow("docs/own_models.md");
+}
 TEST_CASE("the README is followed") {
   follow("README.md");
 }

@@ -22,6 +22,7 @@ struct Commands {
 void addTextCommands(Commands& commands);      // check, fmt
 void addDescribeCommand(Commands& commands);   // describe
 void addListCommand(Commands& commands);       // list
+void addImportCommand(Commands& commands);     // import
 void addRenderCommand(Commands& commands);     // render
 void addReferenceCommand(Commands& commands);  // reference
 void addCaptureCommand(Commands& commands);    // capture

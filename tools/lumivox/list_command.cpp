@@ -1,4 +1,4 @@
-// list scenes|pipelines|techniques|passes
+// list scenes|pipelines|techniques|passes, list parts MODEL
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pass.h"
+#include "lumivox/scene/model_contents.h"
 
 namespace lumivox::command {
 namespace {
@@ -69,6 +70,43 @@ Json passesList(TechniqueSet& techniques) {
   return list;
 }
 
+/// What is in a model file, one row each.
+Json contentsList(const fs::path& file) {
+  const ModelContents contents = readModelContents(file);
+  Json list = Json::array();
+  const auto add = [&](const char* kind, const std::string& name, const std::string& what) {
+    list.push_back({{"kind", kind}, {"name", name}, {"what", what}});
+  };
+  for (const ModelContents::ModelPart& part : contents.parts)
+    add("part", part.name,
+        fmt::format("{} triangles, {} vertices, of {}{}", part.triangles, part.vertices,
+                    fmt::join(part.materials, " "),
+                    part.isDeforming ? "; deforms"
+                    : part.isMoving  ? "; moves"
+                                     : ""));
+  for (const ModelContents::UsedMaterial& material : contents.materials) {
+    const Material& values = material.values;
+    const bool hasImage = !material.texture.empty() || !material.mask.empty() || material.hasEmbeddedImages;
+    add("material", values.name,
+        fmt::format("diffuse {:.3g} {:.3g} {:.3g}, specular {:.3g} {:.3g} {:.3g}, exponent {:.3g}{}{}",
+                    values.diffuse.r, values.diffuse.g, values.diffuse.b, values.specular.r,
+                    values.specular.g, values.specular.b, values.exponent, values.emissive() ? ", emits" : "",
+                    hasImage ? ", images" : ""));
+  }
+  for (const Camera& camera : contents.cameras)
+    add("camera", camera.name,
+        fmt::format("at {:.4g} {:.4g} {:.4g} m{}", camera.eye.x, camera.eye.y, camera.eye.z,
+                    camera.keys.empty() ? "" : "; moves"));
+  for (const Light& light : contents.lights)
+    add("light", light.name,
+        light.kind == LightKind::directional ? "directional"
+        : light.kind == LightKind::point     ? "point"
+                                             : "spot");
+  for (const ModelContents::Animation& animation : contents.animations)
+    add("animation", animation.name, fmt::format("{:.4g} s", animation.duration));
+  return list;
+}
+
 /// A table for the terminal, with some of the members that the JSON has.
 std::string asTable(const Json& list, const std::vector<std::string>& columns) {
   std::vector<std::vector<std::string>> rows{columns};
@@ -92,18 +130,28 @@ std::string asTable(const Json& list, const std::vector<std::string>& columns) {
 }  // namespace
 
 void addListCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("list", "lists scenes, pipelines, techniques or passes");
+  auto* command = commands.app.add_subcommand(
+      "list", "lists scenes, pipelines, techniques or passes, or the parts of a model");
   auto what = std::make_shared<std::string>();
+  auto model = std::make_shared<fs::path>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("WHAT", *what, "scenes, pipelines, techniques or passes")
+  command->add_option("WHAT", *what, "scenes, pipelines, techniques, passes, or parts")
       ->required()
-      ->check(CLI::IsMember({"scenes", "pipelines", "techniques", "passes"}));
+      ->check(CLI::IsMember({"scenes", "pipelines", "techniques", "passes", "parts"}));
+  command->add_option("MODEL", *model, "with parts: a model file");
   command->add_flag("--json", *json, "print JSON");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] {
     Json list;
     std::vector<std::string> columns{"name", "title", "file"};
-    if (*what == "scenes") {
+    if ((*what == "parts") == model->empty())
+      throw Error(model->empty() ? std::string("list parts: no model; expected its file")
+                                 : fmt::format("'{}' behind {}; expected a file behind parts alone",
+                                               model->string(), *what));
+    if (*what == "parts") {
+      list = contentsList(*model);
+      columns = {"kind", "name", "what"};
+    } else if (*what == "scenes") {
       list = texts(NamedText::scene);
     } else if (*what == "pipelines") {
       list = texts(NamedText::pipeline);

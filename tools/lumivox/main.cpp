@@ -38,6 +38,7 @@ int run(int count, char** arguments) {
   addTextCommands(commands);
   addDescribeCommand(commands);
   addListCommand(commands);
+  addImportCommand(commands);
   addRenderCommand(commands);
   addReferenceCommand(commands);
   addCaptureCommand(commands);

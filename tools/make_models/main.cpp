@@ -21,6 +21,7 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeQuad(directory);
     lumivox::models::writeBlock(directory);
     lumivox::models::writeWavingCloth(directory);
+    lumivox::models::writeMovingShapes(directory);
     lumivox::models::writeVase(directory);
     lumivox::models::writeTurned(directory);
     lumivox::models::writeTables(directory);

@@ -13,6 +13,7 @@ void writeSky(const std::filesystem::path& directory);
 void writeQuad(const std::filesystem::path& directory);
 void writeBlock(const std::filesystem::path& directory);
 void writeWavingCloth(const std::filesystem::path& directory);
+void writeMovingShapes(const std::filesystem::path& directory);
 void writeVase(const std::filesystem::path& directory);
 void writeTurned(const std::filesystem::path& directory);
 void writeTables(const std::filesystem::path& directory);

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "gpu/memory.h"
+#include "lumivox/scene/model_animation.h"
 #include "lumivox/scene/models.h"
 #include "scene/octahedral_environment.h"
 
@@ -118,7 +119,7 @@ std::shared_ptr<const EnvironmentMap> constantMap(const glm::vec3& radiance) {
 
 bool deforms(const Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const Object& object) { return object.sequence.has_value(); });
+                     [](const Object& object) { return deforms(object); });
 }
 
 }  // namespace

@@ -183,6 +183,7 @@ class Reader : private BlockReader {
     } else if (block.word == "camera") {
       if (const auto name = nameIn(outer.find("capture")))
         requireKnown(captureNames_, "capture", name->text, *name);
+      if (const auto path = nameIn(outer.find("from"))) checkMeshName(*path);
     } else if (block.word == "light") {
       if (const auto path = nameIn(outer.find("mesh"))) checkMeshName(*path);
     } else if (block.word == "animate" && !block.header.empty()) {
@@ -250,6 +251,10 @@ class Reader : private BlockReader {
       return;
     }
     readLens(block, camera);
+    if (block.has("from")) {
+      readModelView(block, std::move(camera));
+      return;
+    }
     const BlockSpecification& keyGrammar = specificationOf(specificationOf(grammar_, "camera"), "key");
     const std::vector<const Block*> keys = block.blocks("key");
     bool isWhole = true;
@@ -287,6 +292,20 @@ class Reader : private BlockReader {
     const auto& names = captureNames_.inOrder;
     const auto found = std::find(names.begin(), names.end(), placed(block, "capture")->text);
     if (found != names.end()) camera.capture = static_cast<int>(found - names.begin());
+    result_.cameras.push_back(std::move(camera));
+  }
+
+  /// The loader gives it the place and the angle of view of the file's camera.
+  void readModelView(const CheckedBlock& block, Camera camera) {
+    for (const char* word : {"eye", "target", "up", "fov"}) {
+      if (const Property* property = block.find(word))
+        report(*property, fmt::format("'{}' of a camera that a model file holds", word),
+               "from MESH/CAMERA, resolution, aperture and focus");
+    }
+    for (const Block* key : block.blocks("key"))
+      report(key->place, 3, "'key' of a camera that a model file holds",
+             "from MESH/CAMERA, resolution, aperture and focus");
+    result_.modelCameras.push_back({result_.cameras.size(), *placed(block, "from")});
     result_.cameras.push_back(std::move(camera));
   }
 
@@ -382,11 +401,15 @@ class Reader : private BlockReader {
         report(mesh.file.place, mesh.file.length, "the file name contains '#' but the mesh has no sequence",
                "sequence FIRST..LAST");
       }
-      for (const char* word : {"rate", "loop"}) {
-        if (const Property* property = block.find(word)) {
-          report(*property, fmt::format("'{}' without a sequence", word), "sequence FIRST..LAST");
-        }
+      const bool mayMove = hasFormat(mesh.file.text, kGltfFormats);
+      for (const char* word : {"rate", "loop", "animation"}) {
+        const Property* property = block.find(word);
+        if (property == nullptr || (mayMove && property->word != "rate")) continue;
+        report(*property, fmt::format("'{}' without a sequence", word),
+               property->word == "animation" ? "a glTF file (.gltf or .glb)" : "sequence FIRST..LAST");
       }
+      if (const auto animation = placed(block, "animation")) mesh.animation = animation->text;
+      mesh.loop = block.flag("loop", true);
       return;
     }
     if (!hasPattern) {
@@ -395,6 +418,10 @@ class Reader : private BlockReader {
              "a name such as \"horse_##.obj\"");
     }
     const std::vector<double> range = block.numbers("sequence", {});
+    if (hasFormat(mesh.file.text, kGltfFormats) || hasFormat(mesh.file.text, kPlyFormats)) {
+      report(mesh.file.place, mesh.file.length, "a sequence of files that are no OBJ files",
+             "OBJ files; a glTF file may hold an animation");
+    }
     mesh.sequence = MeshText::Sequence{static_cast<int>(range.at(0)), static_cast<int>(range.at(1)),
                                        block.number("rate", 24.0), block.flag("loop", true)};
   }

@@ -41,6 +41,8 @@ struct MeshText {
     bool loop = true;
   };
   std::optional<Sequence> sequence;
+  std::optional<std::string> animation;  ///< of the model file, by name
+  bool loop = true;                      ///< of the model file's animation
   bool isSound = true;  ///< false: the text has findings on it, and only its file can be looked at
 };
 
@@ -94,9 +96,16 @@ struct EnvironmentText {
   double scale = 1.0;
 };
 
+/// A camera that is one of a model file.
+struct ModelCameraText {
+  std::size_t camera = 0;  ///< into SceneDescription::cameras
+  PlacedText from;         ///< MESH/CAMERA
+};
+
 struct SceneDescription {
   std::string name;
   std::vector<Camera> cameras;
+  std::vector<ModelCameraText> modelCameras;
   std::vector<MaterialText> materials;
   std::vector<MeshText> meshes;
   std::vector<AreaLightText> areaLights;
@@ -115,7 +124,8 @@ struct SceneDescription {
 SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings);
 
 /// File name endings of readable formats.
-inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
+inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz", ".gltf", ".glb", ".ply", ".ply.gz"};
+inline const std::vector<std::string> kGltfFormats{".gltf", ".glb"}, kPlyFormats{".ply", ".ply.gz"};
 inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
 inline const std::vector<std::string> kVolumeFormats{".vdb"};
 inline const std::vector<std::string> kSensorFormats{".sens"}, kFloatImageFormats{".exr"},

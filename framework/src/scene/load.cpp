@@ -12,14 +12,17 @@
 #include "dsl/consequences.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/findings.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
+#include "lumivox/scene/model_animation.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"
 #include "scene/assets.h"
 #include "scene/capture_load.h"
 #include "scene/description.h"
 #include "scene/environment_file.h"
-#include "scene/obj_model.h"
+#include "scene/model.h"
+#include "scene/model_files.h"
 #include "scene/texture.h"
 #include "scene/volume_file.h"
 
@@ -125,6 +128,7 @@ class Loader {
       if (!mesh.isSound && !namesOneFile(mesh)) continue;
       if (attempt(mesh.file, [&] { addMesh(mesh); }) && mesh.isSound) read_.insert(mesh.name);
     }
+    for (const ModelCameraText& camera : description_.modelCameras) placeCamera(camera);
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
     for (const CaptureText& capture : description_.captures)
@@ -252,10 +256,13 @@ class Loader {
     ModelOptions modelOptions;
     modelOptions.crease = mesh.crease;
     modelOptions.strict = options_.strict;
+    modelOptions.animation = mesh.animation;
+    modelOptions.loop = mesh.loop;
     modelOptions.needsMaterials = !mesh.material.has_value() && mesh.isSound;
     models_.push_back(std::make_unique<Model>(loadModel(files, modelOptions, hasher_)));
     if (!mesh.isSound) return;
     const Model& model = *models_.back();
+    modelsOf_[static_cast<std::size_t>(&mesh - description_.meshes.data())] = models_.back().get();
     requireSelections(mesh, model);
 
     const std::size_t firstVertex = scene_.positions.size();
@@ -278,7 +285,11 @@ class Loader {
     object.name = objectName(mesh, model, part);
     object.firstVertex = firstVertex + part.firstVertex;
     object.vertexCount = part.vertexCount;
-    object.placement = mesh.placement;
+    object.placement = mesh.placement * part.placement;
+    if (part.animation) {
+      object.animation = part.animation->placedBy(mesh.placement);
+      object.placement = object.animation->placementAt(0.0);
+    }
     for (const Part& run : part.parts) {
       const ModelMaterial& material = model.materials[static_cast<std::size_t>(run.material)];
       if (leftOut(mesh, part.name, material.values.name)) continue;
@@ -444,47 +455,51 @@ class Loader {
       }
     } else {
       const ModelMaterial& model = *use.model;
-      if (!model.diffuseFile.empty())
-        material.diffuseTexture =
-            texture(mapFile(model, "map_Kd", model.diffuseFile), model.diffuseFile, false);
-      if (!model.maskFile.empty()) {
-        material.maskTexture =
-            texture(mapFile(model, "map_d", model.maskFile), model.maskFile, true, model.dissolve);
-      }
+      if (model.diffuse.present())
+        material.diffuseTexture = modelTexture(model, "map_Kd", model.diffuse, false);
+      if (model.mask.present()) material.maskTexture = modelTexture(model, "map_d", model.mask, true);
     }
     return material;
   }
 
-  /// The image that an MTL file names; DiagnosticsError at its line if the image cannot be read.
-  static fs::path mapFile(const ModelMaterial& model, const char* statement, const std::string& name) {
-    const fs::path file = model.mtlFile.parent_path() / name;
-    std::error_code error;
-    const bool readable = hasFormat(name, kImageFormats);
-    if (readable && fs::exists(file, error)) return file;
-    Diagnostic finding;
-    finding.place = {model.mtlFile.string(), lineOfMap(model, statement), 0};
-    finding.what = readable
-                       ? fmt::format("the image '{}' of material '{}' ({}) does not exist", name,
-                                     model.values.name, statement)
-                       : fmt::format("the image '{}' of material '{}' ({}) has a format that cannot be read",
-                                     name, model.values.name, statement);
-    finding.expected = readable ? fmt::format("it at {}", file.lexically_normal().string())
-                                : fmt::format("one of {}", fmt::join(kImageFormats, ", "));
-    throw DiagnosticsError({finding});
+  int modelTexture(const ModelMaterial& model, const char* statement, const ModelImage& image, bool mask) {
+    if (image.bytes == nullptr) requireImage(model, statement, image);
+    return texture(image.file, image.name, mask, mask ? model.dissolve : 1.0f, image.bytes,
+                   model.masksByAlphaOnly);
   }
 
-  /// Each image is read once for each use of it.
-  int texture(const fs::path& file, const std::string& name, bool mask, float coverage = 1.0f) {
-    const auto [entry, isNew] = textures_.emplace(std::tuple(file.lexically_normal(), mask, coverage),
-                                                  static_cast<int>(scene_.textures.size()));
+  /// Each image is read once for each use of it. `bytes`: of an embedded image.
+  int texture(const fs::path& file, const std::string& name, bool mask, float coverage = 1.0f,
+              const std::shared_ptr<const std::string>& bytes = nullptr, bool byAlphaOnly = false) {
+    const auto [entry, isNew] =
+        textures_.emplace(std::tuple(file.lexically_normal(), mask, coverage, mask && byAlphaOnly),
+                          static_cast<int>(scene_.textures.size()));
     if (!isNew) return entry->second;
-    SurfaceTexture image =
-        mask ? readMaskTexture(file, name, hasher_) : readDiffuseTexture(file, name, hasher_);
+    const ByteImage pixels =
+        bytes == nullptr ? readHashedImage(file, hasher_) : decodeByteImage(*bytes, file);
+    SurfaceTexture image = mask ? maskTextureOf(pixels, name, byAlphaOnly) : diffuseTextureOf(pixels, name);
     if (coverage != 1.0f) {
       for (float& value : image.values) value *= coverage;
     }
     scene_.textures.push_back(std::move(image));
     return entry->second;
+  }
+
+  /// Gives a camera of the text the place and the motion of a model's.
+  void placeCamera(const ModelCameraText& text) {
+    const std::string mesh = meshOf(text.from.text);
+    if (!read_.contains(mesh)) return;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < description_.meshes.size(); ++i) {
+      if (description_.meshes[i].name != mesh) continue;
+      for (const ModelCamera& camera : modelsOf_.at(i)->cameras) {
+        known.push_back(mesh + '/' + camera.name);
+        if (known.back() != text.from.text) continue;
+        placeLike(camera, description_.meshes[i].placement, scene_.cameras[text.camera]);
+        return;
+      }
+    }
+    report(text.from, fmt::format("mesh '{}' has no camera '{}'", mesh, text.from.text), known);
   }
 
   void animate(const AnimationText& animation) {
@@ -532,11 +547,12 @@ class Loader {
   Purpose purpose_;
   Scene scene_;
   Hasher hasher_;
-  std::vector<std::unique_ptr<Model>> models_;  // uses_ points into them
+  std::vector<std::unique_ptr<Model>> models_;    // uses_ points into them
+  std::map<std::size_t, const Model*> modelsOf_;  // by the number of the mesh block
   std::vector<Use> uses_;
   std::map<Use::Key, int> useNumbers_;                        // into uses_
   std::map<std::string, const MaterialText*> textMaterials_;  // the first of each name
-  std::map<std::tuple<fs::path, bool, float>, int> textures_;
+  std::map<std::tuple<fs::path, bool, float, bool>, int> textures_;
   std::set<std::string> read_;  // meshes whose files were good
   std::vector<Diagnostic> findings_, warnings_;
 };

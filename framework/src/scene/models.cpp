@@ -10,8 +10,8 @@ std::vector<std::uint32_t> modelsOf(const Scene& scene) {
     if (!object.animated()) continue;
     for (std::size_t j = 0; j < i && models[i] == 0; ++j) {
       const Object& other = scene.objects[j];
-      if (other.animated() && !object.sequence && !other.sequence && object.motion == other.motion)
-        models[i] = models[j];
+      const bool bringMotion = object.sequence || other.sequence || object.animation || other.animation;
+      if (other.animated() && !bringMotion && object.motion == other.motion) models[i] = models[j];
     }
     if (models[i] == 0) models[i] = ++last;
   }

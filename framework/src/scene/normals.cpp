@@ -3,7 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "scene/obj_model.h"
+#include "scene/model.h"
 
 namespace lumivox {
 namespace {

@@ -19,9 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Albedo of surfaces without a material file: the neutral grey that is common for scans.
-constexpr float kUnknownAlbedo = 0.8f;
-
 glm::vec3 vectorOf(const tinyobj::real_t* values) {
   return {values[0], values[1], values[2]};
 }
@@ -136,8 +133,8 @@ class MaterialTable {
     values.exponent = source.shininess;
     values.emission = vectorOf(source.emission);
     result.dissolve = source.dissolve;
-    result.diffuseFile = portable(source.diffuse_texname);
-    result.maskFile = portable(source.alpha_texname);
+    result.diffuse = imageOf(source.diffuse_texname, file);
+    result.mask = imageOf(source.alpha_texname, file);
     result.mtlFile = file;
     noteUnsupported(source);
     const glm::vec3 albedo = values.diffuse + values.specular;
@@ -147,6 +144,13 @@ class MaterialTable {
           file.string(), name, 100.0f * std::max({albedo.x, albedo.y, albedo.z}));
     }
     return result;
+  }
+
+  static ModelImage imageOf(const std::string& written, const fs::path& mtlFile) {
+    ModelImage image;
+    image.name = portable(written);
+    image.file = mtlFile.parent_path() / image.name;
+    return image;
   }
 
   void noteUnsupported(const tinyobj::material_t& source) {

@@ -13,20 +13,6 @@
 namespace lumivox {
 namespace {
 
-/// A triangle flatter than this, as height over longest edge, has no normal in single precision: it is
-/// treated as of zero area.
-constexpr double kLeastHeight = 0x1.0p-23;
-
-bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
-  return glm::length(glm::cross(b - a, c - a)) > kLeastHeight * longest;
-}
-
-/// Normalises in double precision, where squares of floats do not overflow.
-glm::vec3 unit(const glm::vec3& v) {
-  return glm::vec3(glm::normalize(glm::dvec3(v)));
-}
-
 /// Drops bad triangles and reports them.
 class Cleaner {
  public:
@@ -150,8 +136,9 @@ class Builder {
       if (file_.objects[triangle] != object) {
         object = file_.objects[triangle];
         table.clear();
-        model_.objects.push_back(
-            {file_.objectNames[object], static_cast<std::uint32_t>(model_.positions.size()), 0, {}});
+        ModelObject& added = model_.objects.emplace_back();
+        added.name = file_.objectNames[object];
+        added.firstVertex = static_cast<std::uint32_t>(model_.positions.size());
       }
       ModelObject& current = model_.objects.back();
       const auto material = static_cast<int>(file_.materials[triangle]);
@@ -175,7 +162,7 @@ class Builder {
     for (std::size_t v = 0; v < positions.size(); ++v) {
       positions[v] = frame.positions[positionOfVertex_[v]];
       const std::uint32_t normal = normalOfVertex_[v];
-      normals[v] = isGenerated(normal) ? generated[normal & ~kGenerated] : unit(frame.normals[normal]);
+      normals[v] = isGenerated(normal) ? generated[normal & ~kGenerated] : unitNormal(frame.normals[normal]);
       if (!std::isfinite(normals[v].x)) normals[v] = model.normals[v];
     }
     model.framePositions.push_back(std::move(positions));
@@ -228,7 +215,7 @@ class Builder {
     if (isNew) {
       model_.positions.push_back(file_.positions[key.position]);
       model_.normals.push_back(isGenerated(normal) ? generated_[normal & ~kGenerated]
-                                                   : unit(file_.normals[normal]));
+                                                   : unitNormal(file_.normals[normal]));
       model_.texcoords.push_back(key.texcoord == kNone ? glm::vec2(0.0f) : file_.texcoords[key.texcoord]);
       positionOfVertex_.push_back(key.position);
       normalOfVertex_.push_back(normal);
@@ -267,8 +254,8 @@ void requireSameFaces(const ObjFile& first, const ObjFile& frame) {
 
 }  // namespace
 
-Model loadModel(const std::vector<std::filesystem::path>& frames, const ModelOptions& options,
-                Hasher& hasher) {
+Model loadObjModel(const std::vector<std::filesystem::path>& frames, const ModelOptions& options,
+                   Hasher& hasher) {
   const ObjFile first = readObjFile(frames.front(), options, hasher);
   Builder builder(first, options, Cleaner(first, options).keptTriangles());
   Model model = builder.run();

@@ -12,6 +12,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/scene/free_camera.h"
+#include "lumivox/scene/model_animation.h"
 #include "lumivox/scene/scene.h"
 #include "scene/motion.h"
 
@@ -134,6 +135,18 @@ void growByTurn(WideBounds& bounds, const RigidMotion& motion, const glm::dvec3&
   bounds.grow(centre + reach);
 }
 
+/// The corners of the box around points in object space: their transforms bound those of the points.
+std::array<glm::vec3, 8> boxCornersOf(std::span<const glm::vec3> points) {
+  const BlockBounds box(points);
+  std::array<glm::vec3, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      corners[i][static_cast<int>(axis)] =
+          static_cast<float>((i >> axis & 1) != 0 ? box.highest(axis) : box.lowest(axis));
+  }
+  return corners;
+}
+
 /// Grid bounds follow travelling objects in steps of 1/8 of the scene's longest side at rest, so that grids
 /// move rarely.
 constexpr double kTravelStep = 1.0 / 8.0;
@@ -161,6 +174,12 @@ Bounds gridBounds(const Scene& scene, double time, const glm::dvec3& origin) {
   bounds.grow(glm::vec3(low - origin));
   bounds.grow(glm::vec3(high - origin));
   return bounds;
+}
+
+/// The motion of a model file, or the placement; then that of `animate`.
+glm::dmat4 motionAt(const Object& object, double time) {
+  const glm::dmat4 placement = object.animation ? object.animation->placementAt(time) : object.placement;
+  return object.motion ? rigidMotionAt(*object.motion, time) * placement : placement;
 }
 
 /// The vertices of a deforming object: linear between the two frames around the time.
@@ -242,23 +261,35 @@ std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object
     return {placed.low, placed.high};
   }
   WideBounds bounds;
+  glm::dmat4 placement = object.placement;
   const auto add = [&](const glm::vec3& position) {
-    const glm::dvec3 placed(object.placement * glm::dvec4(glm::dvec3(position), 1.0));
+    const glm::dvec3 placed(placement * glm::dvec4(glm::dvec3(position), 1.0));
     if (object.motion && object.motion->angularSpeed != 0.0) {
       growByTurn(bounds, *object.motion, placed);
     } else {
       bounds.grow(placed);
     }
   };
-  if (object.sequence) {
+  const std::span<const glm::vec3> vertices = verticesOf(scene, object);
+  if (object.animation) {
+    std::vector<glm::vec3> positions(vertices.begin(), vertices.end()), normals;
+    for (const double time : object.animation->sampleTimes()) {
+      placement = object.animation->placementAt(time);
+      if (object.animation->deforms()) object.animation->deform(time, positions, normals);
+      for (const glm::vec3& corner : boxCornersOf(positions)) add(corner);
+    }
+  } else if (object.sequence) {
     for (const std::vector<glm::vec3>& frame : object.sequence->positions) {
       for (const glm::vec3& position : frame) add(position);
     }
   } else {
-    for (std::uint32_t v = 0; v < object.vertexCount; ++v) add(scene.positions[object.firstVertex + v]);
+    for (const glm::vec3& position : vertices) add(position);
   }
   assert(!bounds.empty());
-  return {bounds.low, bounds.high};
+  // Between two samples an arc of at most 22.5 degrees leaves the box by 2 % of its radius.
+  constexpr double kBetweenSamples = 0.02;
+  const glm::dvec3 margin(object.animation ? kBetweenSamples * glm::length(bounds.high - bounds.low) : 0.0);
+  return {bounds.low - margin, bounds.high + margin};
 }
 
 const Camera& Scene::camera(const std::string& wanted) const {
@@ -365,16 +396,17 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
   snapshot.objects.reserve(scene.objects.size());
   for (const Object& object : scene.objects) {
     ObjectState& state = snapshot.objects.emplace_back();
-    const glm::dmat4 toWorld =
-        object.motion ? rigidMotionAt(*object.motion, time) * object.placement : object.placement;
+    const glm::dmat4 toWorld = motionAt(object, time);
     const glm::dmat4 toLocal = glm::translate(glm::dmat4(1.0), -snapshot.origin) * toWorld;
     state.toWorld = glm::mat4(toLocal);
     state.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(toLocal))));
     if (object.sequence) deform(*object.sequence, time, state);
+    if (object.animation && object.animation->deforms())
+      object.animation->deform(time, state.positions, state.normals);
     if (object.parts.empty()) continue;
-    if (object.sequence) {
+    if (!state.positions.empty()) {
       grow(bounds, toWorld, state.positions);
-    } else if (object.motion) {
+    } else if (object.motion || object.animation) {
       grow(bounds, toWorld, verticesOf(scene, object));
     } else {
       const WideBounds placed = placedBounds(scene, object);

@@ -169,6 +169,9 @@ BlockSpecification camera() {
        Row("capture", PropertyType::name,
            "a capture: the camera stands where its depth camera stood and sees as high; instead of eye, target, "
            "up, fov, lens and keys"),
+       Row("from", PropertyType::name,
+           "MESH/CAMERA, a camera of a glTF file: its place, its motion and its angle of view; instead of eye, "
+           "target, up, fov and keys"),
        fov().byDefault("40 deg"),
        Row("resolution", PropertyType::resolution,
            "width and height of the image in pixels; of a camera of a capture: of the capture's pictures unless given")
@@ -220,38 +223,41 @@ BlockSpecification mesh() {
       block("without", HeaderUse::none, "leaves out a part or what an MTL material covers",
             {Row("part", PropertyType::name, "object or group of the file; * and ? match any letters"),
              Row("mtl", PropertyType::name, "material name in the file; * and ? match any letters")});
-  BlockSpecification result =
-      block("mesh", HeaderUse::required,
-            "a model; its objects and groups are named MESH/OBJECT, a file without any is MESH alone",
-            {Row("file", PropertyType::text,
-                 "OBJ file, also .obj.gz, beside the scene text or on the asset path; ## stands for the "
-                 "frame number of a sequence")
-                 .required(),
-             Row("material", PropertyType::name, "one material for the whole mesh in place of the file's"),
-             Row("crease", PropertyType::number,
-                 "recomputes smooth normals where faces meet at no more than this angle, 0 deg for flat "
-                 "faces; without it the file's "
-                 "normals are kept and only missing ones are computed, with 30 deg",
-                 dsl::kAngle)
-                 .between(0, 180.0 * kDegree),
-             Row("scale", PropertyType::oneOrThree,
-                 "length of the file's unit, along each axis when three; done first", dsl::kLength)
-                 .between(kSmallestScale, kLargestScale)
-                 .byDefault("1"),
-             Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",
-                 dsl::kAngle)
-                 .within(kLargestTurn * kDegree),
-             Row("translate", PropertyType::vector3, "shift; done last", dsl::kLength)
-                 .within(kFarthestPlace)
-                 .byDefault("0 0 0"),
-             Row("sequence", PropertyType::range,
-                 "first and last frame of a deforming mesh with equal faces in all files")
-                 .between(0, 1e6),
-             Row("rate", PropertyType::number, "frames of the sequence per second")
-                 .between(1e-3, 1e4)
-                 .byDefault("24"),
-             Row("loop", PropertyType::flag, "after the last frame of the sequence comes the first")
-                 .byDefault("on")});
+  BlockSpecification result = block(
+      "mesh", HeaderUse::required,
+      "a model; its objects and groups are named MESH/OBJECT, a file without any is MESH alone",
+      {Row("file", PropertyType::text,
+           "OBJ (.obj, .obj.gz), glTF 2.0 (.gltf, .glb) or PLY file (.ply, .ply.gz) beside the scene text "
+           "or on the asset path; ## stands for the frame number of a sequence of OBJ files")
+           .required(),
+       Row("material", PropertyType::name, "one material for the whole mesh in place of the file's"),
+       Row("crease", PropertyType::number,
+           "recomputes smooth normals where faces meet at no more than this angle, 0 deg for flat "
+           "faces; without it the file's "
+           "normals are kept and only missing ones are computed, with 30 deg",
+           dsl::kAngle)
+           .between(0, 180.0 * kDegree),
+       Row("scale", PropertyType::oneOrThree,
+           "length of the file's unit, along each axis when three; done first", dsl::kLength)
+           .between(kSmallestScale, kLargestScale)
+           .byDefault("1"),
+       Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",
+           dsl::kAngle)
+           .within(kLargestTurn * kDegree),
+       Row("translate", PropertyType::vector3, "shift; done last", dsl::kLength)
+           .within(kFarthestPlace)
+           .byDefault("0 0 0"),
+       Row("sequence", PropertyType::range,
+           "first and last frame of a deforming mesh with equal faces in all files")
+           .between(0, 1e6),
+       Row("rate", PropertyType::number, "frames of the sequence per second")
+           .between(1e-3, 1e4)
+           .byDefault("24"),
+       Row("loop", PropertyType::flag,
+           "after the last frame of the sequence, or the end of the animation, comes the first")
+           .byDefault("on"),
+       Row("animation", PropertyType::name,
+           "the animation of a glTF file that plays; without it the file's first")});
   result.blocks = {use, without};
   return result;
 }

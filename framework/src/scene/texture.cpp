@@ -8,12 +8,6 @@
 namespace lumivox {
 namespace {
 
-ByteImage read(const std::filesystem::path& file, Hasher& hasher) {
-  const std::string bytes = readFile(file, kLargestImageFile);
-  hasher.add(bytes);
-  return decodeByteImage(bytes, file);
-}
-
 SurfaceTexture shapedAs(const ByteImage& image, const std::string& name, bool mask) {
   SurfaceTexture texture;
   texture.name = name;
@@ -28,14 +22,18 @@ SurfaceTexture shapedAs(const ByteImage& image, const std::string& name, bool ma
 
 }  // namespace
 
-SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::string& name,
-                                  Hasher& hasher) {
+ByteImage readHashedImage(const std::filesystem::path& file, Hasher& hasher) {
+  const std::string bytes = readFile(file, kLargestImageFile);
+  hasher.add(bytes);
+  return decodeByteImage(bytes, file);
+}
+
+SurfaceTexture diffuseTextureOf(const ByteImage& image, const std::string& name) {
   static const std::array<float, 256> linear = [] {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgbToLinear(static_cast<float>(i) / 255.0f);
     return table;
   }();
-  const ByteImage image = read(file, hasher);
   SurfaceTexture texture = shapedAs(image, name, false);
   const auto channels = static_cast<std::size_t>(image.channels);
   const bool grey = channels < 3;
@@ -45,12 +43,12 @@ SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::
   return texture;
 }
 
-SurfaceTexture readMaskTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher) {
-  const ByteImage image = read(file, hasher);
+SurfaceTexture maskTextureOf(const ByteImage& image, const std::string& name, bool byAlphaOnly) {
   SurfaceTexture texture = shapedAs(image, name, true);
   const auto channels = static_cast<std::size_t>(image.channels);
   const bool hasAlpha = channels == 2 || channels == 4;
-  for (std::size_t i = 0; i < image.values.size(); i += channels) {
+  if (byAlphaOnly && !hasAlpha) texture.values.assign(image.values.size() / channels, 1.0f);
+  for (std::size_t i = 0; i < image.values.size() && (hasAlpha || !byAlphaOnly); i += channels) {
     texture.values.push_back(static_cast<float>(image.values[i + (hasAlpha ? channels - 1 : 0)]) / 255.0f);
   }
   return texture;

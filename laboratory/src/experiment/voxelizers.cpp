@@ -18,6 +18,7 @@
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/pipeline/pass.h"
+#include "lumivox/scene/model_animation.h"
 #include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox {
@@ -371,7 +372,7 @@ Scene subdivided(const Scene& scene) {
   finer.texcoords.clear();
   finer.indices.clear();
   for (Object& object : finer.objects) {
-    if (object.sequence)
+    if (deforms(object))
       throw Error(fmt::format("{}: object '{}' deforms, so that its triangles cannot be split",
                               scene.file.string(), object.name));
     object.firstVertex = static_cast<std::uint32_t>(finer.positions.size());

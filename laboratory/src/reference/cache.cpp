@@ -9,6 +9,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/reference/reference_cache.h"
+#include "lumivox/scene/model_animation.h"
 #include "reference/kept.h"
 
 namespace lumivox {
@@ -54,6 +55,7 @@ void add(Hasher& hasher, const Object& object) {
     for (const auto& frame : object.sequence->positions) hasher.add(frame);
     for (const auto& frame : object.sequence->normals) hasher.add(frame);
   }
+  if (object.animation) object.animation->addTo(hasher.add("animation"));
 }
 
 void add(Hasher& hasher, const Material& material) {

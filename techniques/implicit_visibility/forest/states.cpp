@@ -81,11 +81,17 @@ class StateMaker {
   }
 
  private:
+  /// Whether triangles may stretch: they deform, or their node may be scaled.
+  bool changesShape(const Leaf& leaf) const {
+    const Object& object = scene_.objects[leaf.object];
+    return object.sequence.has_value() || object.animation != nullptr;
+  }
+
   /// The area at rest times the stretching; 0 for a triangle that has become a point or a line.
   float areaOf(const Leaf& leaf, std::uint32_t node, const PlacedObject& object,
                const glm::vec3& normal) const {
     if (normal == glm::vec3(0.0f)) return 0.0f;
-    if (!scene_.objects[leaf.object].sequence) return leaf.area;
+    if (!changesShape(leaf)) return leaf.area;
     float area = 0.0f;
     if (leaf.vertex == kNoElement)
       area = 0.5f * glm::length(object.doubleArea(leaf.triangle));
@@ -118,7 +124,7 @@ class StateMaker {
   void placeOutline(std::uint32_t node, const Leaf& leaf, const PlacedObject& object) {
     const auto [a, b, c] = object.corners(leaf.triangle);
     float scale = state_.area[node] > 0.0f ? 1.0f : 0.0f;
-    if (scene_.objects[leaf.object].sequence && areas_ == Areas::rest && scale > 0.0f) {
+    if (changesShape(leaf) && areas_ == Areas::rest && scale > 0.0f) {
       const float now = 0.5f * glm::length(object.doubleArea(leaf.triangle));
       scale = std::sqrt(forest_.restTriangleArea[node] / now);
     }

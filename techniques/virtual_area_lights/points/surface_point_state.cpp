@@ -17,7 +17,8 @@ class MovedObject {
         object_(&scene.objects[object]),
         side_(glm::determinant(glm::mat3(state_->toWorld)) < 0.0f ? -1.0f : 1.0f) {}
 
-  bool deforms() const { return object_->sequence.has_value(); }
+  /// Whether triangles may stretch: they deform, or their node may be scaled.
+  bool deforms() const { return object_->sequence.has_value() || object_->animation != nullptr; }
   std::array<glm::vec3, 3> corners(const SurfacePlace& place) const {
     return eachCorner(place, [&](std::uint32_t vertex) {
       return glm::vec3(state_->toWorld * glm::vec4(localPosition(vertex), 1.0f));
