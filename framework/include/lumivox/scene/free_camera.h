@@ -5,8 +5,8 @@
 
 namespace lumivox {
 
-/// The camera as it is at a time, s: its place, target, up and fov by keys and rigid motion, without either. A
-/// camera of a capture stays as it is.
+/// The camera as it is at a time, s: its place, target, up and fov by keys and rigid motion, without either.
+/// A camera of a capture stays as it is.
 Camera cameraAt(const Camera& camera, double time);
 
 /// As snapshotOf(), through `camera`. Error when it looks nowhere: eye and target are one point, or it looks
