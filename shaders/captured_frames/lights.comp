@@ -5,9 +5,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "common/constants.glsl"
 #include "camera.glsl"
+#include "edge.glsl"
 
 const int kSaturatedDropped = 1, kSaturatedScaled = 2;  // in the order of the parameter `saturated`
-const float kEdge = 0.05;        // of the depth: neighbours farther apart are not one surface
 const float kFlyingCosine = 0.1;  // surfaces more grazing than this are edges that the sensor has smeared
 // What became of a pixel.
 const uint kLit = 0u, kNoSurface = 1u, kSaturated = 2u, kSeenLater = 3u;

@@ -2,6 +2,7 @@
 // The real surfaces behind the view's pixels, white: whatever shades them gives irradiance over pi.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "picture.glsl"
+#include "edge.glsl"
 
 layout(binding = 0) uniform sampler2DArray capturedPosition;  // the newest layer of a captured map
 layout(binding = 1) uniform sampler2DArray capturedNormal;
@@ -12,12 +13,11 @@ layout(binding = 3, rgba32f) uniform writeonly image2D diffuseImage;
 
 // On the view's ray, in the plane of the captured pixel; the captured place itself where the ray leaves the plane far from there.
 vec3 onRay(vec2 slope, vec3 posWorld, vec3 normal) {
-  const float kMost = 0.05;  // of the distance
   vec3 ray = right * slope.x + down * slope.y + forward, path = posWorld - eye;
   float facing = dot(ray, normal), along = dot(path, normal);
   if (facing >= 0.0 || along >= 0.0) return posWorld;
   vec3 met = ray * (along / facing);
-  return distance(met, path) <= kMost * length(path) ? eye + met : posWorld;
+  return distance(met, path) <= kEdge * length(path) ? eye + met : posWorld;
 }
 
 const int kReach = 2;  // pixels
@@ -48,13 +48,12 @@ bool surfaceNear(vec2 place, ivec2 nearest, out vec3 found) {
 // The mean normal of the pixels around that lie near the place: a single one may be turned away from a light by noise, and would stay bright
 // in its shadow.
 vec3 normalAround(ivec2 nearest, vec3 found) {
-  const float kNear = 0.05;  // of the depth
   vec3 sum = vec3(0.0);
   for (int y = -kReach; y <= kReach; ++y)
     for (int x = -kReach; x <= kReach; ++x) {
       ivec2 texel = nearest + ivec2(x, y);
       vec3 posWorld;
-      if (isSurface(texel, posWorld) && distance(posWorld, found) <= kNear * dot(found - eye, forward))
+      if (isSurface(texel, posWorld) && distance(posWorld, found) <= kEdge * dot(found - eye, forward))
         sum += texelFetch(capturedNormal, ivec3(texel, 0), 0).xyz;
     }
   return normalize(sum);

@@ -1,15 +1,12 @@
 // Points at every stride-th pixel of a view. C++ side: techniques/virtual_area_lights/pixels.cpp.
 #ifndef LUMIVOX_PIXEL_POINTS
 #define LUMIVOX_PIXEL_POINTS
+#include "point_texel.glsl"
 
 layout(std140, binding = 1) uniform PixelPoints {
   ivec2 pixelPoints;  // along x and y
   int stride;         // pixels
 };
-
-const uint kPointsInRow = 1024u;  // SurfacePoints::kWidth
-
-ivec2 pointTexel(uint point) { return ivec2(point % kPointsInRow, point / kPointsInRow); }
 
 // The middle of a point's square of pixels.
 ivec2 pixelOfPoint(ivec2 point, ivec2 size) { return min(point * stride + stride / 2, size - 1); }

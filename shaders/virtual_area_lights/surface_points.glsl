@@ -3,7 +3,7 @@
 #ifndef LUMIVOX_SURFACE_POINTS
 #define LUMIVOX_SURFACE_POINTS
 
-const uint kPointsInRow = 1024u;  // SurfacePoints::kWidth
+#include "point_texel.glsl"
 
 layout(std140, binding = 7) uniform PointGrid {
   vec3 pointGridLow;      // m
@@ -16,8 +16,6 @@ layout(std140, binding = 7) uniform PointGrid {
 layout(binding = 8) uniform sampler2D pointPosition;  // xyz posWorld; w area, m^2
 layout(binding = 9) uniform sampler2D pointNormal;    // xyz unit, 0 for a degenerate triangle; w model
 layout(binding = 10) uniform sampler2D pointRadius;   // x radius, m; y Phong exponent; z 1: glossy; w 1: front, 0: back of a point
-
-ivec2 pointTexel(uint point) { return ivec2(point % kPointsInRow, point / kPointsInRow); }
 
 // A smaller cosine between normals means the other side of the surface; C++ side: techniques/virtual_area_lights/points/surface_points.h.
 const float kOtherSideCosine = -0.5;

@@ -1,0 +1,1 @@
+const float kEdge = 0.05;  // of the depth: neighbours farther apart are not one surface
