@@ -40,12 +40,16 @@ uint wordOf(vec4 bytes) {
   return cut.x | cut.y << 8 | cut.z << 16 | cut.w << 24;
 }
 
-// The average with one more value: the stored average is multiplied by its count, and the new sum divided by the next count.
+// The average with one more value: the stored average is multiplied by its count, and the new sum divided by the next count. The whole
+// part of the quotient is exact: a division may be off by its last bits (GLSL 4.50, Sec. 4.7.1), and would then take 1 off the average with
+// every fragment that does not change it.
 uint averaged(uint stored, vec4 value) {
   vec4 sum = bytesOf(stored);
   sum.rgb *= sum.a;
   sum += value;
-  return wordOf(vec4(sum.rgb / sum.a, sum.a));
+  vec3 average = floor(sum.rgb / sum.a);
+  average += vec3(lessThanEqual((average + 1.0) * sum.a, sum.rgb)) - vec3(greaterThan(average * sum.a, sum.rgb));
+  return wordOf(vec4(average, sum.a));
 }
 
 // A macro, because not every compiler can pass images to a function.

@@ -50,17 +50,15 @@ class ShadowMapPass : public LightViewPass {
     const ShadowMap result{views.lights, views.views,
                            views.layers(frame, gpu::Format::depth32f, "shadow depth"), views.lightCount(),
                            views.layerCount()};
-    const gpu::RasterState state{.depthTest = true,
-                                 .depthWrite = true,
-                                 .depthClamp = true,
-                                 .depthBiasSlope = 1.5f,
-                                 .depthBiasConstant = 2.0f};
+    const gpu::RasterState state{
+        .depthTest = true, .depthWrite = true, .depthBiasSlope = 1.5f, .depthBiasConstant = 2.0f};
     const auto targets = [&](int layer) {
       return gpu::RenderTargets{.depth = result.depth.get(), .depthLayer = layer};
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
       drawPart(frame, draw, shadow_map::Variant{}, {shadow_map::view({drawn.view.worldToClip})});
     });
+    if (views.layerCount() == 0) result.depth->clear(glm::vec4(1.0f));
     depth = result;
   }
 };

@@ -47,7 +47,7 @@ class RenderPass : public LightViewPass {
       for (const gpu::TextureRef& texture : colours) texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth =
         frame.texture({gpu::TextureKind::d2, gpu::Format::depth32f, views.side, views.side, 1, 1}, "depth");
-    const gpu::RasterState state{.depthTest = true, .depthWrite = true, .depthClamp = true};
+    const gpu::RasterState state{.depthTest = true, .depthWrite = true};
     const auto targets = [&](int layer) {
       gpu::RenderTargets one{.depth = depth.get()};
       for (const gpu::TextureRef& texture : colours) one.colours.push_back({texture.get(), layer});

@@ -202,7 +202,9 @@ TEST_CASE("an empty framebuffer of several samples tells which of them a triangl
       for (int i = 0; i < samples; ++i) {
         const glm::vec2 place = glm::vec2(x, y) + positions[static_cast<std::size_t>(i)];
         if (std::abs(place.x + place.y - 8.0f) < 0.01f) continue;  // on the edge: either is right
-        INFO("pixel " << x << ", " << y << ", sample " << i);
+        INFO("pixel " << x << ", " << y << ", sample " << i << " of " << samples << " at " << place.x - x
+                      << ", " << place.y - y << ", covered samples "
+                      << values[static_cast<std::size_t>(8 * y + x)]);
         const bool covered = (values[static_cast<std::size_t>(8 * y + x)] >> i & 1) != 0;
         REQUIRE(covered == (place.x + place.y < 8.0f));
       }

@@ -42,7 +42,10 @@ TEST_CASE("each of the 65536 signed normalised words is its number, and packed a
       return static_cast<float>(one == kBelowMinusOne ? kMinusOne : one);
     };
     const glm::vec4 expected(unpacked(word), unpacked(other), again(word), again(other));
-    if (found[word] != expected) ++wrong;
+    // A division may be off by its last bits (GLSL 4.50, 4.7.1); the words are exact.
+    const bool near =
+        std::abs(found[word].x - expected.x) <= 1e-6f && std::abs(found[word].y - expected.y) <= 1e-6f;
+    if (!near || found[word].z != expected.z || found[word].w != expected.w) ++wrong;
   }
   CHECK(wrong == 0);
 }

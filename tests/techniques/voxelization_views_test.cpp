@@ -155,7 +155,8 @@ TEST_CASE("a strip is as opaque in the voxel where it begins as the samples that
     const auto covered = std::count_if(samples.begin(), samples.end(),
                                        [&](const glm::vec2& sample) { return sample.x > start; });
     const float share = static_cast<float>(covered) / static_cast<float>(count);
-    CHECK(at(4) == Approx(std::round(share * 255.0f) / 255.0f).margin(1e-6));
+    CHECK(at(4) ==
+          Approx(share).margin(0.5 / 255.0 + 1e-6));  // a byte, in which drivers round halves up or down
     told.insert(at(4));
     for (int x = 2; x < 14; ++x)
       if (x != 4) CHECK(at(x) == (x >= 5 && x <= 7 ? 1.0f : 0.0f));

@@ -58,6 +58,18 @@ std::string glText(GLenum name) {
 // ---- DeviceState
 // ------------------------------------------------------------------------------------------------
 
+namespace {
+
+constexpr int kMostSamples = 8;  // that any shader uses
+
+/// NVIDIA's driver (580.159) makes wrong programs of SPIR-V, and right ones of the GLSL text that is made of
+/// the same SPIR-V: docs/gpu.md, "On a graphics card".
+bool compilesSpirvRight(const std::string& vendor) {
+  return vendor != "NVIDIA Corporation";
+}
+
+}  // namespace
+
 DeviceState::DeviceState(const DeviceOptions& options)
     : context(options.device, options.debugContext),
       memoryBytes(options.memoryBytes),
@@ -73,9 +85,9 @@ DeviceState::DeviceState(const DeviceOptions& options)
     throw AbsentError(
         fmt::format("{} does not load SPIR-V (GL_ARB_gl_spirv); use GLSL shaders instead", info.renderer));
   }
-  shaderInput = options.shaderInput != ShaderInput::automatic ? options.shaderInput
-                : info.spirv                                  ? ShaderInput::spirv
-                                                              : ShaderInput::glsl;
+  shaderInput = options.shaderInput != ShaderInput::automatic   ? options.shaderInput
+                : info.spirv && compilesSpirvRight(info.vendor) ? ShaderInput::spirv
+                                                                : ShaderInput::glsl;
   requireLimits();
   if (debug) listen();
   readLimits();
@@ -144,7 +156,8 @@ void DeviceState::readLimits() {
   GLint strategy = GL_NO_RESET_NOTIFICATION;
   glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
   tellsResets = strategy == GL_LOSE_CONTEXT_ON_RESET;
-  info.maxSamples = std::max(info.maxSamples, 1);
+  // A card that offers 64 runs several invocations for a pixel, each with a part of the samples.
+  info.maxSamples = std::clamp(info.maxSamples, 1, kMostSamples);
   info.maxTextureSize3d = limits.textureSize3d;
   info.maxStorageBytes = static_cast<std::uint64_t>(limits.storageBlockBytes);
   cache.sampled.resize(static_cast<std::size_t>(limits.sampledUnits));

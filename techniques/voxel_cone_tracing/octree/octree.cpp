@@ -209,7 +209,8 @@ class OctreePass : public Pass {
                        chunks);
     scan(frame, counts, chunks, 2, result.levels);  // which begins with the wanted bricks and tiles
     frame.dispatchList(frame.program(octree_rank::kProgram),
-                       {octree_rank::words({wordCount}), octree_rank::tags(tags.nodes),
+                       {octree_rank::rankRoom({room.bricks, room.shown, static_cast<std::uint32_t>(words)}),
+                        octree_rank::octreeLevels(result.levels), octree_rank::tags(tags.nodes),
                         octree_rank::shown(tags.shown), octree_rank::chunkCounts(counts),
                         octree_rank::shownRanks(result.shown), octree_rank::octreeRanks(result.ranks)},
                        chunks);
