@@ -7,7 +7,7 @@ layout(constant_id = 20) const int environmentMap = 0;  // 1: the environment di
 layout(binding = 12) uniform sampler2D environmentTexels;
 
 vec3 environmentSeen(vec3 constant, ivec2 pixel) {
-  if (environmentMap == 0) return constant;
+  if (environmentMap == 0 || constant == vec3(0.0)) return constant;
   vec3 direction = directionOfPixel(pixel);
   direction = direction.x * toMapX.xyz + direction.y * toMapY.xyz + direction.z * toMapZ.xyz;
   vec2 place = vec2(0.5 + atan(direction.x, -direction.z) / (2.0 * kPi), atan(length(direction.xz), direction.y) / kPi);

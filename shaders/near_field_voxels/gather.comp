@@ -139,8 +139,8 @@ void follow(vec3 origin, vec3 direction, inout Sums sums) {
   bool meets = hit.found && hit.t <= lightReach;
   if (!(hit.found && hit.t <= occlusionReach - start)) sums.open += 1.0;
   bool beyond = beyondRadius != 0 ? !meets : !hit.found && leavesGrid() <= lightReach;
-  // A ray stands for the share 1 / rays of pi, the projected solid angle of all: a cone of that width.
-  if (beyond && addsRest != 0) addLight(sums, environmentAlong(environment, direction, inversesqrt(float(rays))));
+  // A ray stands for the share 1 / rays of the projected solid angle of all, pi times the spread: a cone of that width.
+  if (beyond && addsRest != 0) addLight(sums, environmentAlong(environment, direction, sqrt(spread / float(rays))));
 #if RADIANCE != RADIANCE_NONE
   if (meets) addLight(sums, radianceOf(hit));
 #endif

@@ -116,9 +116,13 @@ class PropagatePass : public Pass {
       if (frame.traits().environmentMap) {
         // Light from a direction travels the opposite way: the odd band changes its sign.
         const auto bands = environmentBands(frame.sceneDescription());
-        for (std::size_t c = 0; c < bands.size(); ++c)
-          parameters.environmentSlope[c] =
-              -kMeanProjection * cell * cell * glm::vec4(bands[c].y, bands[c].z, bands[c].w, 0.0f);
+        for (std::size_t c = 0; c < bands.size(); ++c) {
+          // Two bands are negative somewhere beyond |c1| = c0 / sqrt 3: a small sun is taken as wide as that.
+          const glm::vec3 odd(bands[c].y, bands[c].z, bands[c].w);
+          const float share =
+              std::min(1.0f, bands[c].x / (std::sqrt(3.0f) * std::max(glm::length(odd), 1e-30f)));
+          parameters.environmentSlope[c] = glm::vec4(-kMeanProjection * cell * cell * share * odd, 0.0f);
+        }
       }
     }
     frame.dispatch(frame.program(variant, start::Constants{.cosineLobe = lobe == Lobe::cosine}),

@@ -257,6 +257,26 @@ TEST_CASE(
   CHECK(half == Approx(0.01).epsilon(0.03));  // albedo sigma l 2 / 2, of a length of 1 m
 }
 
+TEST_CASE("a reference with an environment is kept and found again") {
+  SceneBuilder builder = boxOnFloor();
+  const bool constant = GENERATE(true, false);
+  if (constant) {
+    builder.scene.environment = glm::vec3(1.0f);
+  } else {
+    shineFrom(builder.scene,
+              environmentOf(8, [](const glm::vec3& d) { return glm::vec3(1.0f + 0.9f * d.x); }));
+  }
+  ReferenceOptions options = quietly(2, 2);
+  options.useCache = true;
+  options.seed = 4711;
+  const LayeredImage made = cachedReference(builder.scene, options);
+  CHECK(reference::isKept(builder.scene, options));
+  const LogCapture log;
+  const LayeredImage found = cachedReference(builder.scene, options);
+  CHECK(log.text() == "");
+  CHECK(found.layers.at("environment").values() == made.layers.at("environment").values());
+}
+
 TEST_CASE("one texel more of light makes another reference") {
   SceneBuilder builder = boxOnFloor();
   EnvironmentMap map = constantMap(1.0f);

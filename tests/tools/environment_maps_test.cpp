@@ -113,3 +113,58 @@ TEST_CASE("a map of one value in two texels gives the image of the constant envi
     CHECK(most < 1e-6);  // weights of texels of one value round
   }
 }
+
+TEST_CASE("cones read a map around the whole sphere, across the folds of its octahedron, at every width") {
+  // Camera rays of soft shadows are cones as wide as a pixel. The mean of 1 + d.s over a narrow cone is that
+  // on its axis.
+  Scene scene = outside();
+  const glm::vec3 slope(0.5f, -0.3f, 0.4f);
+  EnvironmentMap map =
+      environmentOf(64, [&](const glm::vec3& d) { return glm::vec3(1.0f + glm::dot(d, slope)); });
+  shineFrom(scene, map);
+  const auto [size, most] = GENERATE(table<int, double>({{48, 0.02}, {12, 0.04}, {4, 0.12}}));
+  scene.cameras.front().fov = 1.6;
+  scene.cameras.front().eye = {0, 50, 0};
+  for (const glm::dvec3 ahead :
+       {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0.01), glm::dvec3(0, 0, 1),
+        glm::dvec3(0, 0, -1), glm::dvec3(1, 1, -1), glm::dvec3(-1, 0.5, -1)}) {
+    scene.cameras.front().target = scene.cameras.front().eye + ahead;
+    RenderOptions options;
+    options.width = options.height = size;
+    const ImageBuffer image =
+        renderOnce(scene, committed("voxel_cone_tracing_soft_shadows"), options).outputs.at("direct");
+    const CameraView view = snapshotOf(scene, 0.0, {}, size, size).camera;
+    double worst = 0.0;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const glm::vec3 d =
+            glm::normalize(view.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+        worst = std::max(worst, std::abs(double(image.at(x, y, 1)) - (1.0 + glm::dot(d, slope))));
+      }
+    INFO("image of " << size << " pixels ahead " << ahead.x << " " << ahead.y << " " << ahead.z);
+    CHECK(worst < most);
+  }
+}
+
+TEST_CASE("another environment of a scene that is kept is rendered as by a fresh executor") {
+  Scene first = outside();
+  Scene second = first, constant = first;
+  shineFrom(first, environmentOf(16, [](const glm::vec3& d) { return glm::vec3(1.0f + 0.9f * d.x); }));
+  shineFrom(second, environmentOf(16, [](const glm::vec3& d) { return glm::vec3(1.0f + 0.9f * d.y); }));
+  constant.environment = glm::vec3(0.2f, 0.3f, 0.4f);
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.keepEverything = GENERATE(false, true);
+  const Pipeline text = committed("near_field_voxels");
+  PipelineExecutor kept(device(), techniques(), first, text, options);
+  kept.render(0.0);
+  for (const Scene* next : {&second, &constant, &first}) {
+    kept.setScene(*next);
+    const FrameResult changed = kept.render(0.0);
+    const FrameResult fresh = PipelineExecutor(device(), techniques(), *next, text, options).render(0.0);
+    for (const auto& [name, image] : fresh.outputs) {
+      INFO(name);
+      CHECK(image.values() == changed.outputs.at(name).values());
+    }
+  }
+}

@@ -169,8 +169,8 @@ std::string whatMayBeLeftOut(const SceneTraits& traits) {
   std::string kind;
   for (const bool has :
        {traits.triangles, traits.textures, traits.masks, traits.glossy, traits.emission, traits.environment,
-        traits.medium, traits.particles, traits.movingGeometry, traits.movingCamera, traits.movingLights,
-        traits.directionalLights > 0, traits.pointLights > 0, traits.spotLights > 0})
+        traits.environmentMap, traits.medium, traits.particles, traits.movingGeometry, traits.movingCamera,
+        traits.movingLights, traits.directionalLights > 0, traits.pointLights > 0, traits.spotLights > 0})
     kind += has ? '1' : '0';
   return kind;
 }

@@ -216,7 +216,10 @@ Scene edited(const Scene& scene, const SceneEdits& edits) {
     result.environment = *edits.environment;
     result.environmentMap = nullptr;
   }
-  if (edits.off.count("environment") != 0) result.environment = glm::vec3(0.0f);
+  if (edits.off.count("environment") != 0) {
+    result.environment = glm::vec3(0.0f);
+    result.environmentMap = nullptr;
+  }
   std::erase_if(result.lights,
                 [&](const Light& light) { return edits.off.count("light " + light.name) != 0; });
   std::erase_if(result.media,

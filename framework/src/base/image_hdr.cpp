@@ -2,10 +2,13 @@
 // runs have to be walked to tell a whole file from a truncated one, and that is most of decoding them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
+#include <vector>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -25,7 +28,8 @@ class HdrReader {
     if (pixels > mostPixels)
       throw Error(fmt::format("has {}, {} as floats; expected at most {} pixels", claim,
                               formatBytes(pixels * 3 * sizeof(float)), mostPixels));
-    // The longest run takes two bytes for 127 values, of four components a pixel.
+    // The longest run takes two bytes for 127 values, of four components a pixel. Runs of the old kind may
+    // pack more; such images are refused.
     const std::uint64_t leastBytes = pixels * 4 * 2 / 128;
     if (leastBytes > bytes_.size())
       throw Error(fmt::format("claims {}, more than {} bytes hold", claim, bytes_.size()));
@@ -71,6 +75,8 @@ class HdrReader {
         if (!(exposure > 0.0f) || !std::isfinite(exposure))
           throw Error(fmt::format("has the exposure '{}'; expected a positive number", text));
         exposure_ *= exposure;
+        if (!(exposure_ > 0.0f) || !std::isfinite(exposure_))
+          throw Error("has exposures whose product is no positive number; expected one");
       }
     }
     if (!known) throw Error("names no format; expected a line FORMAT=32-bit_rle_rgbe");

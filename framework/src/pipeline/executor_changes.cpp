@@ -139,7 +139,7 @@ void PipelineExecutor::State::setScene(const Scene& next) {
   const Reads changed = whatChanged(*scene, next);
   const bool otherObjects = scene->objects.size() != next.objects.size();
   scene = &next;
-  context.setScene(next, reads(changed, Reads::geometry | Reads::materials));
+  context.setScene(next, reads(changed, Reads::geometry | Reads::materials | Reads::environment));
   forEachCheck([&](PipelineExecutor& check) { check.setScene(next); });
   const SceneTraits traits = SceneTraits::of(next);
   const bool otherTraits = std::exchange(sceneTraits, traits) != traits;

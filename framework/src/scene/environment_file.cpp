@@ -33,6 +33,11 @@ ImageBuffer imageOf(const std::filesystem::path& file) {
 EnvironmentMap readEnvironmentFile(const std::filesystem::path& file, const EnvironmentText& text,
                                    bool strict) {
   const ImageBuffer image = imageOf(file);
+  constexpr int kLongestSide = 16384;  // that graphics devices have textures of
+  const std::int64_t wide = image.width(), high = image.height();
+  if (image.pixelCount() > 1 && (wide > 8 * high || high > 4 * wide || std::max(wide, high) > kLongestSide))
+    throw Error(fmt::format("{}: is {} x {} pixels; expected twice as wide as high, and at most {} on a side",
+                            file.string(), wide, high, kLongestSide));
   EnvironmentMap map;
   map.width = image.width();
   map.height = image.height();

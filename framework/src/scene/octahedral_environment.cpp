@@ -33,7 +33,7 @@ Sums finest(const EnvironmentMap& map, int side) {
   constexpr int kPartsAcross = 4;  // of a texel of the octahedron
   Sums sums(side);
   const auto cut = [&](int texels) { return std::max(1, (kPartsAcross * side + texels - 1) / texels); };
-  const int across = cut(map.width / 2), down = cut(map.height), parts = across * down;
+  const int across = cut(std::max(1, map.width / 2)), down = cut(map.height), parts = across * down;
   const glm::vec3* texel = map.radiance.data();
   for (int row = 0; row < map.height; ++row) {
     const double solidAngle = map.solidAngle(row) / parts;

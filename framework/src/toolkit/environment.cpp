@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "lumivox/pipeline/gpu_scene.h"
 #include "lumivox/shader/slots.h"
@@ -44,21 +45,35 @@ glm::vec3 brightestOfEnvironment(const Scene& scene) {
 std::array<glm::vec4, 3> environmentBands(const Scene& scene) {
   constexpr double kPi = std::numbers::pi;
   const double y0 = 0.5 / std::sqrt(kPi), y1 = std::sqrt(3.0 / (4.0 * kPi));
-  std::array<glm::dvec4, 3> sums{};
-  if (!scene.environmentMap) {
-    for (int c = 0; c < 3; ++c) sums[static_cast<std::size_t>(c)].x = 4.0 * kPi * y0 * scene.environment[c];
-  } else {
+  std::array<glm::dvec3, 3> moments{};  // of red, green and blue: radiance times direction, over the sphere
+  if (scene.environmentMap) {
     const EnvironmentMap& map = *scene.environmentMap;
+    // Integrals over the azimuths of a column of sin and -cos, and over the polar angles of a row.
+    std::vector<glm::dvec2> columns;
+    const double turn = 2.0 * kPi / map.width;
+    for (int column = 0; column < map.width; ++column) {
+      const double left = turn * column - kPi, right = left + turn;
+      columns.emplace_back(std::cos(left) - std::cos(right), std::sin(left) - std::sin(right));
+    }
     const glm::vec3* texel = map.radiance.data();
     for (int row = 0; row < map.height; ++row) {
+      const double a = kPi * row / map.height, b = kPi * (row + 1) / map.height;
+      const double sideways = 0.5 * (b - a) - 0.25 * (std::sin(2.0 * b) - std::sin(2.0 * a)),
+                   upwards = 0.5 * (std::sin(b) * std::sin(b) - std::sin(a) * std::sin(a)) * turn;
       for (int column = 0; column < map.width; ++column, ++texel) {
-        const glm::dvec3 d(map.direction(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f));
-        const glm::dvec4 basis = map.solidAngle(row) * glm::dvec4(y0, y1 * d.y, y1 * d.z, y1 * d.x);
-        for (int c = 0; c < 3; ++c) sums[static_cast<std::size_t>(c)] += double((*texel)[c]) * basis;
+        const glm::dvec2& c = columns[static_cast<std::size_t>(column)];
+        const glm::dvec3 direction(sideways * c.x, upwards, sideways * c.y);
+        for (int channel = 0; channel < 3; ++channel)
+          moments[static_cast<std::size_t>(channel)] += double((*texel)[channel]) * direction;
       }
     }
+    for (glm::dvec3& moment : moments) moment = glm::transpose(glm::dmat3(map.toMap)) * moment;
   }
-  return {glm::vec4(sums[0]), glm::vec4(sums[1]), glm::vec4(sums[2])};
+  std::array<glm::vec4, 3> bands;
+  for (std::size_t c = 0; c < bands.size(); ++c)
+    bands[c] = glm::vec4(4.0 * kPi * y0 * scene.environment[static_cast<int>(c)], y1 * moments[c].y,
+                         y1 * moments[c].z, y1 * moments[c].x);
+  return bands;
 }
 
 }  // namespace lumivox

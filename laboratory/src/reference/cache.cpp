@@ -154,6 +154,8 @@ std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOpti
   }
   for (const int bounces : resolved.options.bounceLayers)
     for (const std::string& layer : bounceLayerNames(bounces)) channels[layer] = 3;
+  if (hasEnvironment(scene))
+    for (const char* layer : kEnvironmentLayers) channels[layer] = 3;
   if (entry.layers.size() != 2 * channels.size()) return "it has other layers";
   for (const auto& [name, count] : channels) {
     for (const std::string& layer : {name, name + ".variance"}) {
@@ -225,7 +227,7 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   Hasher hasher;
   hasher.add("lumivox reference").add(kTracerVersion);
   if (!scene.media.empty()) hasher.add(kMediaVersion);
-  if (SceneTraits::of(scene).environment) hasher.add("environment").add(kEnvironmentVersion);
+  if (hasEnvironment(scene)) hasher.add("environment").add(kEnvironmentVersion);
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
   for (const auto& capture : scene.captures)

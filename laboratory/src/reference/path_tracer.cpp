@@ -174,7 +174,7 @@ LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& 
         "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");
   }
   const Tracer tracer(scene, resolved);
-  Film film(options.width, options.height, !tracer.media.empty(), SceneTraits::of(scene).environment,
+  Film film(options.width, options.height, !tracer.media.empty(), hasEnvironment(virtualScene),
             options.bounceLayers);
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;

@@ -58,6 +58,14 @@ void add(Scene& scene, const Scene& real) {
 
 }  // namespace
 
+bool hasEnvironment(const Scene& scene) {
+  return SceneTraits::of(scene).environment ||
+         std::any_of(
+             scene.captures.begin(), scene.captures.end(), [](const std::shared_ptr<const Capture>& capture) {
+               return capture->realScene != nullptr && SceneTraits::of(*capture->realScene).environment;
+             });
+}
+
 std::optional<Scene> withRealScenes(const Scene& scene) {
   const auto standsForScene = [](const std::shared_ptr<const Capture>& capture) {
     return capture->realScene != nullptr;

@@ -13,4 +13,8 @@ namespace lumivox::reference {
 /// no capture stands for a scene.
 std::optional<Scene> withRealScenes(const Scene& scene);
 
+/// Whether this scene, or one that a capture of it stands for, has an environment: references of it have the
+/// layers of kEnvironmentLayers.
+bool hasEnvironment(const Scene& scene);
+
 }  // namespace lumivox::reference

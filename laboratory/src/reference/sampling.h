@@ -77,7 +77,7 @@ class AliasTable {
  public:
   AliasTable() = default;
   explicit AliasTable(std::vector<double> weights);    ///< not negative, with a positive sum
-  static constexpr std::size_t kBytesWhileBuilt = 20;  ///< for each weight, the weights included
+  static constexpr std::size_t kBytesWhileBuilt = 28;  ///< for each weight, the weights included
   bool empty() const { return slots_.empty(); }
   /// One of the indices for two independent numbers of 32 random bits: the first chooses the slot, the second
   /// between its two indices. (What a first number leaves below the slot would be 12 bits for a million

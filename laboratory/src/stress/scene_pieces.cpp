@@ -113,6 +113,12 @@ Scene moved(const Scene& scene, const Similarity& by) {
   for (Light& light : result.lights) mover.move(light);
   for (Camera& camera : result.cameras) mover.move(camera);
   for (Medium& medium : result.media) mover.move(medium);
+  if (scene.environmentMap) {
+    auto map = std::make_shared<EnvironmentMap>(*scene.environmentMap);
+    map->toMap = map->toMap * glm::mat3(glm::transpose(by.rotation));
+    map->finish();
+    result.environmentMap = std::move(map);
+  }
   return result;
 }
 

@@ -79,8 +79,12 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
   if (covering.through > 1.0 - kOpaque) passed *= exp(-opticalDepth(eyeWorld + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
   // A cone that ended early, as opaque, gets no light from the environment.
-  if (covering.through > 1.0 - kOpaque)
-    radiance += passed * (covering.through * environmentAlong(environment, direction, 0.5 * pixelWidth * depthPerMetre));
+  // Far away, the footprint is a cone of the lens's and the pixel's angular widths, as in diameterAt().
+  if (covering.through > 1.0 - kOpaque) {
+    float lens = aperture > 0.0 ? aperture / focus : 0.0;
+    float width = widthRule == kDoubleCone ? lens + pixelWidth : sqrt(lens * lens + 4.0 / 3.0 * pixelWidth * pixelWidth);
+    radiance += passed * (covering.through * environmentAlong(environment, direction, 0.5 * width * depthPerMetre));
+  }
 #endif
   return radiance;
 }
