@@ -3,6 +3,7 @@
 // usage: bench_model_loading [--quick | REPEATS] (default: 15), from the project's folder. --quick: a small
 // model, whose figures mean nothing, for the tests. Exit code 1: the arrays differ.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -176,7 +177,9 @@ bool compare(const std::string& name, const fs::path& file, int repeats,
 }
 
 int run(int repeats, std::uint32_t side) {
-  setLogLevel(LogLevel::warnings);
+  setLogLevel(LogLevel::quiet);
+  // Every repetition takes new memory from the system, as a program does that loads a model once.
+  mallopt(M_MMAP_THRESHOLD, 1 << 17);
   const Arrays sheet = sheetOf(side);
   const fs::path folder = fs::temp_directory_path() / fmt::format("lumivox-model-loading-{}", getpid());
   fs::create_directories(folder);

@@ -61,3 +61,22 @@ TEST_CASE("a text cut off at any byte or with any byte changed is taken or refus
     CHECK_NOTHROW(fuzz::pipelineText(changed));
   }
 }
+
+TEST_CASE("a model cut off at any byte or with any byte changed is taken or refused with a message") {
+  const auto goThrough = [](const std::string& model, std::size_t step, void (*run)(std::string_view)) {
+    for (std::size_t i = 0; i < model.size(); i += step) {
+      CHECK_NOTHROW(run(model.substr(0, i)));
+      for (const int change : {0x15, 0x80, 0x01}) {
+        std::string changed = model;
+        changed[i] = static_cast<char>(changed[i] ^ change);
+        CHECK_NOTHROW(run(changed));
+      }
+    }
+  };
+  const std::filesystem::path seeds = sourceDirectory() / "tests/fuzz/seeds";
+  for (const auto& file : std::filesystem::directory_iterator(seeds / "gltf_model"))
+    goThrough(readFile(file.path()), 3, fuzz::gltfModel);
+  for (const auto& file : std::filesystem::directory_iterator(seeds / "ply_model"))
+    goThrough(readFile(file.path()), 3, fuzz::plyModel);
+  goThrough(readFile(sourceDirectory() / "scenes/models/moving_shapes.glb"), 61, fuzz::gltfModel);
+}

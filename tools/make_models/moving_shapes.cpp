@@ -131,7 +131,7 @@ std::string cube(Accessors& accessors) {
 std::string animation(Accessors& accessors) {
   const int quarters = accessors.floats({0, 0.5f, 1, 1.5f, 2}, "SCALAR", 1, ",\"min\":[0],\"max\":[2]");
   std::vector<float> bends, turns;
-  for (const double degrees : {0, 60, 0, -60, 0}) pushTurn(bends, 2, degrees * kPi / 180);
+  for (const double degrees : {0, 40, 0, -40, 0}) pushTurn(bends, 2, degrees * kPi / 180);
   for (const double degrees : {0, 90, 180, 270, 360}) pushTurn(turns, 1, degrees * kPi / 180);
   return fmt::format(
       "\"animations\":[{{\"name\":\"play\",\"samplers\":[{{\"input\":{0},\"output\":{1}}},{{\"input\":{0},\"output\":"
@@ -164,11 +164,11 @@ void writeMovingShapes(const std::filesystem::path& directory) {
       "\"scene\":0,\"scenes\":[{{\"nodes\":[0,1,3,4,5]}}],\n\"nodes\":[\n"
       "{{\"name\":\"bar\",\"mesh\":0,\"skin\":0}},\n{{\"name\":\"lower\",\"translation\":[-0.6,0,0],\"children\":[2]}},\n"
       "{{\"name\":\"upper\",\"translation\":[0,0.8,0]}},\n{{\"name\":\"cube\",\"mesh\":1,\"translation\":[0.6,0.6,0]}},\n"
-      "{{\"name\":\"view\",\"camera\":0,\"translation\":[0,0.8,3.5]}},\n"
+      "{{\"name\":\"view\",\"camera\":0,\"translation\":[0,0.8,4]}},\n"
       "{{\"name\":\"lamp\",\"translation\":[0.5,2.5,1.5],\"extensions\":{{\"KHR_lights_punctual\":{{\"light\":0}}}}}}],\n"
       "\"cameras\":[{{\"type\":\"perspective\",\"perspective\":{{\"yfov\":0.7,\"znear\":0.01}}}}],\n"
       "\"materials\":[{{\"name\":\"copper\",\"pbrMetallicRoughness\":{{\"baseColorFactor\":[0.95,0.64,0.54,1],"
-      "\"metallicFactor\":1,\"roughnessFactor\":0.4}}}},\n{{\"name\":\"clay\",\"pbrMetallicRoughness\":{{"
+      "\"metallicFactor\":0.5,\"roughnessFactor\":0.4}}}},\n{{\"name\":\"clay\",\"pbrMetallicRoughness\":{{"
       "\"baseColorFactor\":[0.3,0.5,0.7,1],\"metallicFactor\":0,\"roughnessFactor\":0.8}}}}],\n"
       "\"meshes\":[{{\"primitives\":[{{{},\"material\":0}}]}},\n{{\"primitives\":[{{{},\"material\":1}}]}}],\n"
       "\"skins\":[{{\"joints\":[1,2],\"inverseBindMatrices\":{}}}],\n{},\n{}}}\n",

@@ -366,6 +366,15 @@ std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t l
   stream.next_in = reinterpret_cast<Bytef*>(packed.data());
   stream.avail_in = static_cast<uInt>(packed.size());
   std::string content;
+  // The last four bytes claim the size (RFC 1952, Sec. 2.3.1), at most what deflate can hold: room that is
+  // not used is never touched, but a text that grows is copied.
+  if (packed.size() >= 4) {
+    constexpr std::uint64_t kMostExpansion = 1032;
+    std::uint64_t claimed = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      claimed |= std::uint64_t{static_cast<unsigned char>(packed[packed.size() - 4 + i])} << (8 * i);
+    content.reserve(std::min({claimed, kMostExpansion * packed.size(), limitBytes}));
+  }
   std::vector<char> block(1 << 20);
   int result = Z_OK;
   while (result == Z_OK) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include "lumivox/base/file.h"
@@ -182,31 +183,42 @@ std::vector<float> GltfAccessor::floats() const {
   return values;
 }
 
-std::vector<glm::vec3> GltfAccessor::vectors3() const {
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  require({3}, "vectors");
-  std::vector<glm::vec3> values(count_);
+/// Vectors of floats that lie side by side are copied at once: memory is touched only once.
+template <class Vector>
+std::vector<Vector> GltfAccessor::elements() const {
+  static_assert(sizeof(Vector) == static_cast<std::size_t>(Vector::length()) * sizeof(float));
+  const bool isAligned = reinterpret_cast<std::uintptr_t>(data_) % alignof(Vector) == 0;
+  if (data_ != nullptr && type_ == kFloat && stride_ == sizeof(Vector) && isAligned &&
+      sparseIndices_.empty()) {
+    const void* first = data_;
+    return {static_cast<const Vector*>(first), static_cast<const Vector*>(first) + count_};
+  }
+  std::vector<Vector> values(count_);
   fill(values);
   return values;
 }
 
+std::vector<glm::vec3> GltfAccessor::vectors3() const {
+  require({3}, "vectors");
+  return elements<glm::vec3>();
+}
+
 std::vector<glm::vec2> GltfAccessor::vectors2() const {
-  static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
   require({2}, "vectors");
-  std::vector<glm::vec2> values(count_);
-  fill(values);
-  return values;
+  return elements<glm::vec2>();
 }
 
 std::vector<std::uint32_t> GltfAccessor::indices() const {
   require({1}, "indices");
   requireWhole(type_, place_.member("componentType"));
+  const bool isAligned = reinterpret_cast<std::uintptr_t>(data_) % alignof(std::uint32_t) == 0;
+  if (data_ != nullptr && type_ == kUnsignedInt && stride_ == sizeof(std::uint32_t) && isAligned &&
+      sparseIndices_.empty()) {
+    const void* first = data_;
+    return {static_cast<const std::uint32_t*>(first), static_cast<const std::uint32_t*>(first) + count_};
+  }
   std::vector<std::uint32_t> values(count_);
   inParallel(data_ == nullptr ? 0 : count_, [&](std::size_t begin, std::size_t end) {
-    if (type_ == kUnsignedInt && stride_ == sizeof(std::uint32_t)) {
-      if (end > begin) std::memcpy(&values[begin], data_ + begin * stride_, (end - begin) * stride_);
-      return;
-    }
     for (std::size_t i = begin; i < end; ++i) values[i] = wholeNumber(data_ + i * stride_, type_);
   });
   for (std::size_t i = 0; i < sparseIndices_.size(); ++i)

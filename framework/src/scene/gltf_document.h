@@ -116,6 +116,8 @@ class GltfAccessor {
  private:
   float component(const char* at) const;
   void readSparse(GltfDocument& document);
+  template <class Vector>
+  std::vector<Vector> elements() const;
   template <class Element>
   void fill(std::vector<Element>& values) const;
 

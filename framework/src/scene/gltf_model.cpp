@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "lumivox/base/error.h"
@@ -12,6 +13,7 @@
 #include "scene/gltf_material.h"
 #include "scene/gltf_nodes.h"
 #include "scene/indexed_mesh.h"
+#include "scene/parallel.h"
 
 namespace lumivox {
 namespace {
@@ -289,12 +291,10 @@ class GltfLoader {
 
   static void placeTexcoords(const TexcoordUse& use, std::vector<glm::vec2>& texcoords) {
     const bool isPlain = use.offset == glm::dvec2(0) && use.scale == glm::dvec2(1) && use.rotation == 0.0;
-    for (glm::vec2& texcoord : texcoords) {
-      if (isPlain)
-        texcoord.y = 1.0f - texcoord.y;
-      else
-        texcoord = use(texcoord);
-    }
+    inParallel(texcoords.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        texcoords[i] = isPlain ? glm::vec2(texcoords[i].x, 1.0f - texcoords[i].y) : use(texcoords[i]);
+    });
   }
 
   std::vector<std::uint32_t> trianglesOf(const GltfValue& source, std::size_t vertices) {
@@ -302,8 +302,14 @@ class GltfLoader {
     if (const auto index = source.index("indices", root_.count("accessors"), "accessors")) {
       const GltfAccessor accessor(document_, *index);
       corners = accessor.indices();
-      const auto most = std::max_element(corners.begin(), corners.end());
-      if (most != corners.end() && *most >= vertices)
+      std::atomic<bool> anyBeyond = false;
+      inParallel(corners.size(), [&](std::size_t begin, std::size_t end) {
+        std::uint32_t most = 0;
+        for (std::size_t i = begin; i < end; ++i) most = std::max(most, corners[i]);
+        if (end > begin && most >= vertices) anyBeyond = true;
+      });
+      const auto most = anyBeyond ? std::max_element(corners.begin(), corners.end()) : corners.end();
+      if (anyBeyond)
         accessor.place().refuse(fmt::format("index {} is {}", most - corners.begin(), *most),
                                 fmt::format("one of {} vertices", vertices));
     } else {

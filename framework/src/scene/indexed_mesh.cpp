@@ -166,8 +166,10 @@ FinishedMesh finished(IndexedMesh mesh, const ModelOptions& options, const std::
     });
   }
   // Unused vertices may be anything in the file.
-  for (glm::vec3& position : result.mesh.positions)
-    if (!isFinite(position)) position = glm::vec3(0.0f);
+  inParallel(result.mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (!isFinite(result.mesh.positions[v])) result.mesh.positions[v] = glm::vec3(0.0f);
+  });
   return result;
 }
 

@@ -129,7 +129,12 @@ class Builder {
       if (objectA != objectB) return objectA < objectB;
       return materialRank[file_.materials[kept_[a]]] < materialRank[file_.materials[kept_[b]]];
     });
-    VertexTable table(3 * kept_.size());
+    model_.indices.reserve(3 * kept_.size());
+    for (auto* values : {&model_.positions, &model_.normals}) values->reserve(3 * kept_.size());
+    model_.texcoords.reserve(3 * kept_.size());
+    positionOfVertex_.reserve(3 * kept_.size());
+    normalOfVertex_.reserve(3 * kept_.size());
+    VertexTable table(mostCornersOfObject());
     std::uint32_t object = kNone;
     for (const std::uint32_t index : order) {
       const std::uint32_t triangle = kept_[index];
@@ -172,6 +177,13 @@ class Builder {
  private:
   static constexpr std::uint32_t kGenerated = 0x80000000u;  // marks the number of a normal group
   static bool isGenerated(std::uint32_t normal) { return (normal & kGenerated) != 0; }
+
+  /// The table of vertices holds one object at a time: a small one stays in the cache.
+  std::size_t mostCornersOfObject() const {
+    std::vector<std::size_t> corners(file_.objectNames.size(), 0);
+    for (const std::uint32_t triangle : kept_) corners[file_.objects[triangle]] += 3;
+    return corners.empty() ? 0 : *std::max_element(corners.begin(), corners.end());
+  }
 
   std::vector<std::uint32_t> ranks() const {
     std::vector<std::uint32_t> rank(file_.materialTable.size(), kNone);

@@ -126,6 +126,13 @@ class ObjScanner {
  public:
   ObjScanner(std::string& text, const std::filesystem::path& file) : text_(text), file_(file), lines_(text) {
     result_.objectNames.emplace_back();
+    // Room that is not used is never touched, but a vector that grows is copied. Lines are rarely shorter.
+    constexpr std::size_t kBytesPerVector = 24, kBytesPerCorner = 8;
+    result_.positions.reserve(text.size() / kBytesPerVector);
+    result_.normals.reserve(text.size() / kBytesPerVector);
+    result_.texcoords.reserve(text.size() / kBytesPerVector);
+    result_.corners.reserve(text.size() / kBytesPerCorner);
+    result_.polygons.reserve(text.size() / (3 * kBytesPerCorner));
   }
 
   ObjScan run() {

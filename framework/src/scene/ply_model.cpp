@@ -18,44 +18,10 @@
 #include "lumivox/base/log.h"
 #include "scene/indexed_mesh.h"
 #include "scene/parallel.h"
+#include "scene/ply_header.h"
 
 namespace lumivox {
 namespace {
-
-enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-std::size_t sizeOf(Scalar type) {
-  constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-std::optional<Scalar> scalarNamed(std::string_view name) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> kNames{{{"char", "int8"},
-                                                                   {"uchar", "uint8"},
-                                                                   {"short", "int16"},
-                                                                   {"ushort", "uint16"},
-                                                                   {"int", "int32"},
-                                                                   {"uint", "uint32"},
-                                                                   {"float", "float32"},
-                                                                   {"double", "float64"}}};
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (name == kNames[i][0] || name == kNames[i][1]) return static_cast<Scalar>(i);
-  return std::nullopt;
-}
-
-struct PlyProperty {
-  std::string name;
-  Scalar type = Scalar::float32;
-  std::optional<Scalar> listCount;  ///< type of the length of a list
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
-};
-
-enum class PlyFormat { ascii, littleEndian, bigEndian };
 
 template <class T>
 T numberAt(const char* at, bool isSwapped) {
@@ -65,153 +31,27 @@ T numberAt(const char* at, bool isSwapped) {
   return std::bit_cast<T>(bytes);
 }
 
-double loadScalar(const char* at, Scalar type, bool isSwapped) {
+double loadScalar(const char* at, PlyScalar type, bool isSwapped) {
   switch (type) {
-    case Scalar::int8:
+    case PlyScalar::int8:
       return numberAt<std::int8_t>(at, false);
-    case Scalar::uint8:
+    case PlyScalar::uint8:
       return numberAt<std::uint8_t>(at, false);
-    case Scalar::int16:
+    case PlyScalar::int16:
       return numberAt<std::int16_t>(at, isSwapped);
-    case Scalar::uint16:
+    case PlyScalar::uint16:
       return numberAt<std::uint16_t>(at, isSwapped);
-    case Scalar::int32:
+    case PlyScalar::int32:
       return numberAt<std::int32_t>(at, isSwapped);
-    case Scalar::uint32:
+    case PlyScalar::uint32:
       return numberAt<std::uint32_t>(at, isSwapped);
-    case Scalar::float32:
+    case PlyScalar::float32:
       return numberAt<float>(at, isSwapped);
-    case Scalar::float64:
+    case PlyScalar::float64:
       return numberAt<double>(at, isSwapped);
   }
   return 0.0;
 }
-
-bool isSeparator(char c) {
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
-std::vector<std::string_view> wordsOf(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; at < line.size();) {
-    while (at < line.size() && isSeparator(line[at])) ++at;
-    const std::size_t begin = at;
-    while (at < line.size() && !isSeparator(line[at])) ++at;
-    if (at > begin) words.push_back(line.substr(begin, at - begin));
-  }
-  return words;
-}
-
-std::string legible(std::string_view text) {
-  constexpr std::size_t kShown = 40;
-  std::string result;
-  for (const char c : text.substr(0, kShown)) result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-  return text.size() > kShown ? result + "..." : result;
-}
-
-/// The texts before the data, and where these begin.
-struct PlyHeader {
-  PlyFormat format = PlyFormat::ascii;
-  std::vector<PlyElement> elements;
-  std::size_t dataAt = 0;  ///< byte
-  int lines = 0;
-};
-
-class HeaderReader {
- public:
-  HeaderReader(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
-
-  PlyHeader run() {
-    if (nextLine() != "ply") refuse("does not begin with 'ply'", "a PLY file");
-    bool hasFormat = false;
-    for (;;) {
-      const std::vector<std::string_view> words = wordsOf(nextLine());
-      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-      if (words[0] == "end_header") break;
-      if (words[0] == "format") {
-        readFormat(words);
-        hasFormat = true;
-      } else if (words[0] == "element") {
-        readElement(words);
-      } else if (words[0] == "property") {
-        readProperty(words);
-      } else {
-        refuse(fmt::format("unknown word '{}' in the header", legible(words[0])),
-               "format, comment, element, property or end_header");
-      }
-    }
-    if (!hasFormat) refuse("the header has no format", "format ascii 1.0 or a binary one");
-    header_.dataAt = at_;
-    header_.lines = line_;
-    return std::move(header_);
-  }
-
- private:
-  [[noreturn]] void refuse(const std::string& what, const std::string& expected) const {
-    throw Error(fmt::format("{}:{}: {}; expected {}", file_.string(), line_, what, expected));
-  }
-
-  std::string_view nextLine() {
-    constexpr std::size_t kLongestLine = 4096;
-    ++line_;
-    const std::size_t end = text_.find('\n', at_);
-    if (end == std::string_view::npos || end - at_ > kLongestLine)
-      refuse("the header does not end", "a line end_header (is this a PLY file?)");
-    std::string_view line = text_.substr(at_, end - at_);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    at_ = end + 1;
-    return line;
-  }
-
-  void readFormat(const std::vector<std::string_view>& words) {
-    constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-      if (words.size() == 3 && words[1] == kNames[i] && words[2] == "1.0") {
-        header_.format = static_cast<PlyFormat>(i);
-        return;
-      }
-    }
-    refuse("unknown format", "format ascii, binary_little_endian or binary_big_endian, and 1.0");
-  }
-
-  void readElement(const std::vector<std::string_view>& words) {
-    constexpr std::size_t kMostElements = 64;
-    PlyElement element;
-    if (words.size() != 3 ||
-        std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count).ptr !=
-            words[2].data() + words[2].size() ||
-        element.count > std::numeric_limits<std::uint32_t>::max() || header_.elements.size() >= kMostElements)
-      refuse("malformed element", "element NAME COUNT, with a count below 2^32, and at most 64 elements");
-    element.name = words[1];
-    header_.elements.push_back(std::move(element));
-  }
-
-  void readProperty(const std::vector<std::string_view>& words) {
-    constexpr std::size_t kMostProperties = 256;
-    const std::string expected = "property TYPE NAME or property list TYPE TYPE NAME";
-    if (header_.elements.empty()) refuse("a property before the first element", "an element first");
-    std::vector<PlyProperty>& properties = header_.elements.back().properties;
-    PlyProperty property;
-    const bool isList = words.size() == 5 && words[1] == "list";
-    const auto type = scalarNamed(words.size() < 3 ? "" : words[words.size() - 2]);
-    if ((!isList && words.size() != 3) || !type || properties.size() >= kMostProperties)
-      refuse("malformed property", expected);
-    property.name = words.back();
-    property.type = *type;
-    if (isList) {
-      property.listCount = scalarNamed(words[2]);
-      if (!property.listCount || *property.listCount >= Scalar::float32)
-        refuse("a list whose length is no whole number", expected);
-    }
-    properties.push_back(std::move(property));
-  }
-
-  std::string_view text_;
-  const std::filesystem::path& file_;
-  PlyHeader header_;
-  std::size_t at_ = 0;
-  int line_ = 0;
-};
 
 /// Numbers one behind another in the data, of either form.
 class PlyData {
@@ -226,7 +66,7 @@ class PlyData {
   bool isAscii() const { return isAscii_; }
   bool isSwapped() const { return isSwapped_; }
 
-  double next(Scalar type) {
+  double next(PlyScalar type) {
     if (isAscii_) return nextWord();
     const char* here = take(sizeOf(type));
     return loadScalar(here, type, isSwapped_);
@@ -247,19 +87,19 @@ class PlyData {
 
  private:
   double nextWord() {
-    while (at_ < bytes_.size() && isSeparator(bytes_[at_])) ++at_;
+    while (at_ < bytes_.size() && isPlySeparator(bytes_[at_])) ++at_;
     const char *begin = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
     if (begin == end) refuse("the data end", "more numbers (is the file truncated?)");
     double value = 0;
     const auto result = std::from_chars(*begin == '+' ? begin + 1 : begin, end, value);
-    if (result.ptr == begin || (result.ptr < end && !isSeparator(*result.ptr)) ||
+    if (result.ptr == begin || (result.ptr < end && !isPlySeparator(*result.ptr)) ||
         result.ec == std::errc::invalid_argument)
-      refuse(
-          fmt::format("'{}' is not a number",
-                      legible(wordsOf(std::string_view(begin, std::min<std::size_t>(
-                                                                  64, static_cast<std::size_t>(end - begin))))
-                                  .front())),
-          "numbers");
+      refuse(fmt::format(
+                 "'{}' is not a number",
+                 legible(plyWordsOf(std::string_view(begin, std::min<std::size_t>(
+                                                                64, static_cast<std::size_t>(end - begin))))
+                             .front())),
+             "numbers");
     if (result.ec == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();
     at_ += static_cast<std::size_t>(result.ptr - begin);
     return value;
@@ -295,7 +135,7 @@ std::optional<Target> targetOf(const std::string& name) {
 class PlyReader {
  public:
   PlyReader(const std::string& bytes, const std::filesystem::path& file)
-      : file_(file), header_(HeaderReader(bytes, file).run()), data_(bytes, header_, file) {}
+      : file_(file), header_(readPlyHeader(bytes, file)), data_(bytes, header_, file) {}
 
   IndexedMesh run() {
     requireRoom();
@@ -396,9 +236,9 @@ class PlyReader {
       else
         unused_.push_back(property.name);
       if (targets.back() && targets.back()->meaning == Meaning::colour)
-        colourScale_ = property.type == Scalar::uint8    ? 1.0 / 255.0
-                       : property.type == Scalar::uint16 ? 1.0 / 65535.0
-                                                         : 1.0;
+        colourScale_ = property.type == PlyScalar::uint8    ? 1.0 / 255.0
+                       : property.type == PlyScalar::uint16 ? 1.0 / 65535.0
+                                                            : 1.0;
     }
     isByteColour_ = colourScale_ < 1.0;
     if (found[0] != 3)
@@ -453,18 +293,18 @@ class PlyReader {
     struct Field {
       Target target;
       std::size_t offset;
-      Scalar type;
+      PlyScalar type;
     };
     std::vector<Field> fields;
     std::size_t size = 0;
     bool isPlain = !data_.isSwapped();
     std::array<std::array<std::size_t, 3>, 3> offsets{};
     for (std::size_t p = 0; p < targets.size(); ++p) {
-      const Scalar type = element.properties[p].type;
+      const PlyScalar type = element.properties[p].type;
       if (targets[p]) {
         const bool isColour = targets[p]->meaning == Meaning::colour;
-        if (isColour || type != Scalar::float32) fields.push_back({*targets[p], size, type});
-        isPlain = isPlain && (isColour || type == Scalar::float32);
+        if (isColour || type != PlyScalar::float32) fields.push_back({*targets[p], size, type});
+        isPlain = isPlain && (isColour || type == PlyScalar::float32);
         if (!isColour)
           offsets[static_cast<std::size_t>(targets[p]->meaning)][static_cast<std::size_t>(targets[p]->axis)] =
               size;
@@ -526,7 +366,7 @@ class PlyReader {
   /// The triangles with 32-bit indices before the first other polygon; their number.
   std::size_t readTriangles(const PlyElement& element) {
     const PlyProperty& property = element.properties.front();
-    if (sizeOf(*property.listCount) != 1 || sizeOf(property.type) != 4 || property.type == Scalar::float32)
+    if (sizeOf(*property.listCount) != 1 || sizeOf(property.type) != 4 || property.type == PlyScalar::float32)
       return 0;
     constexpr std::size_t kSize = 13;
     const char* at = data_.here();
