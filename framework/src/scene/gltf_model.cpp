@@ -134,8 +134,13 @@ class GltfLoader {
     const bool isLast = --uses_[mesh] == 0;
     std::vector<Primitive>& primitives = primitivesOf(mesh, skin.has_value());
     for (Primitive& primitive : primitives) {
-      if (!primitive.positionDeltas.empty() || primitive.sets > 0)
+      if (!primitive.positionDeltas.empty() || primitive.sets > 0) {
+        // Each node has its own copy.
+        requireMemory(
+            primitive.positionDeltas.size() * primitive.mesh.mesh.positions.size() * 2 * sizeof(glm::vec3),
+            document_.file().string());
         addDeformation(primitive, vertices, *deformation);
+      }
       vertices += primitive.mesh.mesh.positions.size();
       if (isLast)
         append(model_, std::move(primitive.mesh), primitive.material);

@@ -192,8 +192,8 @@ void ModelAnimation::deform(double time, std::vector<glm::vec3>& positions,
 }
 
 std::vector<double> ModelAnimation::sampleTimes() const {
-  constexpr std::size_t kMost = 1024, kMostDeforming = 256;
-  return model_->sampleTimes(deforms() ? kMostDeforming : kMost);
+  constexpr std::size_t kMost = 256;
+  return model_->sampleTimes(kMost);
 }
 
 void ModelAnimation::addTo(Hasher& hasher) const {
