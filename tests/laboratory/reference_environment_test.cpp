@@ -1,9 +1,11 @@
 // Environment maps in the reference, against closed forms.
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "lumivox/base/log.h"
 #include "lumivox/reference/path_tracer.h"
 #include "reference/cache.h"
 #include "reference/environment.h"
+#include "reference/kept.h"
 #include "support/environment_maps.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
