@@ -11,6 +11,7 @@
 #include "lumivox/reference/reference_cache.h"
 #include "lumivox/scene/model_animation.h"
 #include "reference/kept.h"
+#include "reference/real_scene.h"
 
 namespace lumivox {
 namespace reference {
