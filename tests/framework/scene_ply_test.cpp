@@ -120,6 +120,8 @@ TEST_CASE("each way in which a PLY file can be none gives one error with its lin
       {good.substr(0, good.size() - 3), Tells("m.ply", "truncated")},
       {with("element face 1", "element line 1"), Tells("m.ply", "faces")},
       {with("0 1 0\n3", "1 0 0\n3"), Tells("no triangle")},
+      {with("end_header", "element vertex 0\nproperty float q\nend_header"),
+       Tells("m.ply", "'vertex' twice")},
   };
   for (const auto& [file, told] : files) {
     CAPTURE(file.substr(0, 300));

@@ -333,3 +333,14 @@ TEST_CASE("traits tell what is there, not what is named") {
   const SceneTraits everything = SceneTraits::everything();
   CHECK((everything.textures && everything.masks && everything.medium && everything.movingCamera));
 }
+
+TEST_CASE("the normal of an object that its placement flattens is finite and across the plane") {
+  Scene scene;
+  scene.cameras.push_back(Camera{});
+  Object object;
+  object.name = "flat";
+  object.placement = glm::scale(glm::dmat4(1.0), glm::dvec3(2.0, 3.0, 0.0));
+  scene.objects.push_back(object);
+  const glm::vec3 normal = snapshotOf(scene, 0.0).objects[0].normalToWorld * glm::vec3(0.3f, 0.2f, 0.9f);
+  CHECK(glm::normalize(normal) == glm::vec3(0, 0, 1));
+}

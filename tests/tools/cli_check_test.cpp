@@ -292,12 +292,12 @@ TEST_CASE(
 
 TEST_CASE("check finds models and images that are nowhere or in a format that cannot be read") {
   const Workplace place;
-  place.write("room.gltf", "{}");
+  place.write("room.fbx", "{}");
   place.write("sky.exr", "v/1");
   checkSlips(kRoomScene, ".scene",
              {{"room.obj", "models/room.obj", 3, Tells("models/room.obj", "not exist")},
               {"room.obj", "rom.obj", 3, meant("room.obj")},
-              {"room.obj", "room.gltf", 3, Tells("room.gltf", ".obj", ".obj.gz")},
+              {"room.obj", "room.fbx", 3, Tells("room.fbx", ".obj", ".obj.gz")},
               {"  mesh", "  material m { texture \"sky.exr\" }\n  mesh", 3,
                Tells("sky.exr", ".png", ".jpg", ".jpeg", ".tga")},
               {"  mesh", "  material m { mask \"gone.png\" }\n  mesh", 3, Tells("gone.png", "not exist")}});

@@ -49,6 +49,8 @@ int GltfMaterials::numberOf(std::optional<std::size_t> material, const glm::vec3
     grey.values.diffuse = kUnknownAlbedo * colour;
     table_.push_back(std::move(grey));
   }
+  std::string& name = table_.back().values.name;
+  name = sceneNameOf(name, "material", names_);
   return entry->second;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/gltf_document.h"
+#include "scene/gltf_nodes.h"
 #include "scene/metallic_roughness.h"
 #include "scene/model.h"
 
@@ -59,6 +60,7 @@ class GltfMaterials {
   std::map<std::size_t, std::shared_ptr<const std::string>> embedded_;  // by image
   std::map<std::pair<std::string, bool>, glm::vec3> means_;
   std::vector<ModelMaterial> table_;
+  NextNumbers names_;  // of the table: each once, since scene texts choose materials by name
 };
 
 }  // namespace lumivox

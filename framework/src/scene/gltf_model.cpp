@@ -65,7 +65,9 @@ class GltfLoader {
     const auto required = root_.find("extensionsRequired");
     for (std::size_t i = 0; required && i < required->size(); ++i) {
       const std::string name = required->at(i).asText();
-      const bool isMaterial = name.substr(0, 14) == "KHR_materials_";
+      // Its surfaces have no metallic-roughness form to fall back on.
+      const bool isMaterial =
+          name.substr(0, 14) == "KHR_materials_" && name != "KHR_materials_pbrSpecularGlossiness";
       if (std::find(known.begin(), known.end(), name) == known.end() && !isMaterial)
         required->at(i).refuse(fmt::format("the file cannot be read without '{}'", name.substr(0, 80)),
                                "no other than " + listed(known));
@@ -178,6 +180,8 @@ class GltfLoader {
         object.animation = std::make_shared<const ModelAnimation>(nodes_.animated, node);
       return;
     }
+    requireMemory(2 * deformation->positionDeltas.size() * vertices * sizeof(glm::vec3),
+                  "morph targets of one object");
     for (auto* targets : {&deformation->positionDeltas, &deformation->normalDeltas})
       for (auto& target : *targets) target.resize(vertices, glm::vec3(0.0f));
     if (skin) gatherInfluences(*skin, vertices, *deformation);
@@ -436,6 +440,17 @@ class GltfLoader {
         result.influences.push_back(influence);
       }
       ++result.sets;
+    }
+    for (std::size_t v = 0; v < vertices && result.sets > 0; ++v) {
+      float sum = 0.0f;
+      for (std::size_t set = 0; set < result.sets; ++set)
+        for (const float weight : result.influences[set * vertices + v].weights) sum += weight;
+      if (!(sum > 0.0f)) {
+        result.influences[v].weights[0] = sum = 1.0f;  // it follows its first joint
+        continue;
+      }
+      for (std::size_t set = 0; set < result.sets; ++set)
+        for (float& weight : result.influences[set * vertices + v].weights) weight /= sum;
     }
     if (result.sets == 0) attributes.refuse("lacks 'JOINTS_0' of a mesh with a skin", "joints and weights");
   }

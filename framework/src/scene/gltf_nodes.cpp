@@ -121,7 +121,7 @@ class NodeReader {
   }
 
   void readNames() {
-    std::set<std::string> taken;
+    NextNumbers taken;
     const std::size_t meshes = root_.count("meshes");
     for (std::size_t i = 0; i < nodes_.animated->nodes.size(); ++i) {
       const GltfValue node = root_.item("nodes", i);
@@ -247,8 +247,11 @@ class NodeReader {
               .refuse(fmt::format("{} matrices for {} joints", matrices.count(), skin.joints.size()),
                       "one for each joint");
         for (std::size_t v = 0; v < 16 * skin.joints.size(); ++v)
-          skin.inverseBind[v / 16][static_cast<int>(v % 16 / 4)][static_cast<int>(v % 4)] =
-              static_cast<double>(values[v]);
+          if (!std::isfinite(values[v]))
+            source.member("inverseBindMatrices").refuse("a matrix that is not finite", "finite matrices");
+          else
+            skin.inverseBind[v / 16][static_cast<int>(v % 16 / 4)][static_cast<int>(v % 4)] =
+                static_cast<double>(values[v]);
       }
       model.skins.push_back(std::move(skin));
     }
@@ -279,7 +282,9 @@ std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes
     if (!perspective) continue;  // an orthographic camera, which has no eye
     ModelCamera camera;
     camera.name = nodes.names[node];
-    camera.fov = perspective->member("yfov").asNumber(1e-3, 3.14);
+    // The range of a scene text.
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    camera.fov = perspective->member("yfov").asNumber(0.1 * kDegree, 179.0 * kDegree);
     const std::vector<double> times =
         model.moves(node) ? model.sampleTimes(kMostViews) : std::vector<double>{0.0};
     for (const double time : times) {
@@ -328,8 +333,10 @@ std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes
     } else if (type == "spot") {
       light.kind = LightKind::spot;
       const GltfValue cone = source.member("spot");
-      const double outer = cone.number("outerConeAngle", std::numbers::pi / 4, 1e-3, std::numbers::pi / 2);
-      light.innerAngle = static_cast<float>(cone.number("innerConeAngle", 0.0, 0.0, outer));
+      // A right angle in single precision is a little wider.
+      const double outer =
+          std::min(cone.number("outerConeAngle", std::numbers::pi / 4, 1e-3, 1.5708), std::numbers::pi / 2);
+      light.innerAngle = static_cast<float>(cone.number("innerConeAngle", 0.0, 0.0, 1.5708));
       light.outerAngle = static_cast<float>(outer);
       if (light.innerAngle >= light.outerAngle) light.innerAngle = 0.999f * light.outerAngle;
     } else {
@@ -340,7 +347,7 @@ std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes
   return result;
 }
 
-std::string sceneNameOf(const std::string& name, const std::string& fallback, std::set<std::string>& taken) {
+std::string sceneNameOf(const std::string& name, const std::string& fallback, NextNumbers& taken) {
   constexpr std::size_t kLongest = 200;
   std::string result = name.substr(0, kLongest);
   for (char& c : result)
@@ -348,10 +355,11 @@ std::string sceneNameOf(const std::string& name, const std::string& fallback, st
         c == '\x7f')
       c = '_';
   if (result.empty()) result = fallback;
-  if (taken.insert(result).second) return result;
-  for (std::size_t number = 2;; ++number) {
-    std::string numbered = fmt::format("{}_{}", result, number);
-    if (taken.insert(numbered).second) return numbered;
+  const auto [entry, isNew] = taken.emplace(result, 2);
+  if (isNew) return result;
+  for (;;) {
+    std::string numbered = fmt::format("{}_{}", result, entry->second++);
+    if (taken.emplace(numbered, 2).second) return numbered;
   }
 }
 

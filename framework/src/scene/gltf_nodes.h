@@ -1,9 +1,9 @@
 // The node hierarchy of a glTF file with what moves it, its cameras and its lights.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -31,7 +31,9 @@ std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes
 /// lm/W at 555 nm: what exporters multiply radiant units with.
 inline constexpr double kLuminousEfficacy = 683.0;
 
+/// Names that are taken, and the number that the next equal one gets.
+using NextNumbers = std::map<std::string, int>;
 /// A name without blanks, slashes and the letters of patterns; numbered where `taken` has it.
-std::string sceneNameOf(const std::string& name, const std::string& fallback, std::set<std::string>& taken);
+std::string sceneNameOf(const std::string& name, const std::string& fallback, NextNumbers& taken);
 
 }  // namespace lumivox

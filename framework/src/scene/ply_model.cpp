@@ -141,10 +141,13 @@ class PlyReader {
     requireRoom();
     bool hasVertices = false, hasFaces = false;
     for (const PlyElement& element : header_.elements) {
-      if (element.name == "vertex" && !hasVertices) {
+      if ((element.name == "vertex" && hasVertices) || (element.name == "face" && hasFaces))
+        throw Error(
+            fmt::format("{}: has the element '{}' twice; expected one", file_.string(), element.name));
+      if (element.name == "vertex") {
         readVertices(element);
         hasVertices = true;
-      } else if (element.name == "face" && !hasFaces) {
+      } else if (element.name == "face") {
         readFaces(element);
         hasFaces = true;
       } else {
@@ -192,8 +195,8 @@ class PlyReader {
                       file_.string(), header_.dataAt, least, data_.left()));
     std::uint64_t vertices = 0, faces = 0;
     for (const PlyElement& element : header_.elements) {
-      if (element.name == "vertex") vertices = element.count;
-      if (element.name == "face") faces = element.count;
+      if (element.name == "vertex") vertices = std::max(vertices, element.count);
+      if (element.name == "face") faces = std::max(faces, element.count);
     }
     if (vertices > kMostModelTriangles || faces > kMostModelTriangles)
       throw Error(fmt::format("{}: {} vertices and {} faces; expected at most {} of each", file_.string(),

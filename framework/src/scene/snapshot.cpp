@@ -176,6 +176,14 @@ Bounds gridBounds(const Scene& scene, double time, const glm::dvec3& origin) {
   return bounds;
 }
 
+/// The inverse transpose. Of what is flattened, as by an animated scale of 0, it is the cofactor matrix,
+/// which turns normals the same way and stays finite.
+glm::dmat3 normalMatrixOf(const glm::dmat3& toWorld) {
+  if (glm::determinant(toWorld) != 0.0) return glm::transpose(glm::inverse(toWorld));
+  return {glm::cross(toWorld[1], toWorld[2]), glm::cross(toWorld[2], toWorld[0]),
+          glm::cross(toWorld[0], toWorld[1])};
+}
+
 /// The motion of a model file, or the placement; then that of `animate`.
 glm::dmat4 motionAt(const Object& object, double time) {
   const glm::dmat4 placement = object.animation ? object.animation->placementAt(time) : object.placement;
@@ -399,7 +407,7 @@ SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera
     const glm::dmat4 toWorld = motionAt(object, time);
     const glm::dmat4 toLocal = glm::translate(glm::dmat4(1.0), -snapshot.origin) * toWorld;
     state.toWorld = glm::mat4(toLocal);
-    state.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(toLocal))));
+    state.normalToWorld = glm::mat3(normalMatrixOf(glm::dmat3(toLocal)));
     if (object.sequence) deform(*object.sequence, time, state);
     if (object.animation && object.animation->deforms())
       object.animation->deform(time, state.positions, state.normals);
