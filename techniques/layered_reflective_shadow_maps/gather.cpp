@@ -165,12 +165,12 @@ class GatherPass : public Pass {
           const int ofPortion = std::min(asked.lights, lights - light);
           parameters.last = firstCone + conesAtOnce == count && light + ofPortion >= lights &&
                             layer + asked.layers >= ofView;
-          frame.dispatch(program,
-                         {gather::parameters(parameters), GBufferBinding(*gbuffer),
-                          storeOf(light, ofPortion, layer, asked.layers),
-                          marchOf(frame, light == 0 && layer == 0), EnvironmentBinding(frame),
-                          gather::sumImage(image)},
-                         pixels(frame));
+          frame.dispatch(
+              program,
+              {gather::parameters(parameters), GBufferBinding(*gbuffer),
+               storeOf(light, ofPortion, layer, asked.layers), marchOf(frame, light == 0 && layer == 0),
+               EnvironmentBinding(frame), gather::sumImage(image)},
+              pixels(frame));
           parameters.first = false;
         }
     });
