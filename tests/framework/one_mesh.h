@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/one_model.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/scene/scene.h"
@@ -21,31 +22,14 @@ inline const char* const kCube =
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
 
 /// A scene with one mesh `m` of `m.obj`.
-struct OneMesh {
-  TemporaryDirectory directory;
-  std::filesystem::path file;
-
-  explicit OneMesh(const std::string& obj, const std::string& mesh = "", const std::string& more = "") {
-    directory.write("m.obj", obj);
-    file = directory.write(
-        "a.scene", "scene \"x\" {\ncamera main { eye 0 0 9  target 0 0 0 }\nmesh m {\nfile \"m.obj\"\n" +
-                       mesh + "\n}\n" + more + "\n}\n");
-  }
-  Scene load(bool strict = false) const {
-    SceneLoadOptions options;
-    options.strict = strict;
-    return loadScene(file, options);
-  }
-  std::string error() const {
-    return messageOf<Error>([&] { load(); });
-  }
+struct OneMesh : OneModel {
+  explicit OneMesh(const std::string& obj, const std::string& mesh = "", const std::string& more = "")
+      : OneModel("m.obj", obj, mesh, more) {}
 };
 
 /// The scene, with everything that was logged while it was loaded.
 inline std::pair<Scene, std::string> loadLogged(const OneMesh& mesh) {
-  const LogCapture log;
-  Scene scene = mesh.load();
-  return {std::move(scene), log.text()};
+  return mesh.logged();
 }
 
 /// An uncompressed TGA file, top row first; `channels` of 3 (RGB) or 4 (RGBA) or 1.
