@@ -46,7 +46,7 @@ TEST_CASE("import writes a canonical scene whose camera, lights and materials ar
   CHECK(runCommand("lumivox check '" + text.string() + "'").exitCode == 0);
   const Scene scene = loadScene(text);
   CHECK(scene.objects.at(0).name == "my room/red_one");
-  CHECK(scene.materials.at(0).name == "red paint");
+  CHECK(scene.materials.at(0).name == "red_paint");
   CHECK(scene.materials.at(0).diffuse.r == Approx(0.957f).epsilon(0.01));
   const Camera& camera = scene.camera("eye");
   CHECK((camera.eye == glm::dvec3(0, 0, 5) && camera.fov == Approx(0.5)));
@@ -83,7 +83,7 @@ TEST_CASE("list parts shows what is in a model, as a table and as JSON") {
   const auto model = folder.write("m.gltf", litTriangle());
   const auto table = runCommand("lumivox list parts '" + model.string() + "'");
   CHECK(table.exitCode == 0);
-  CHECK_THAT(table.output, Tells("red_one", "1 triangles", "red paint", "eye", "bulb", "point", "sun"));
+  CHECK_THAT(table.output, Tells("red_one", "1 triangles", "red_paint", "eye", "bulb", "point", "sun"));
   const auto json =
       nlohmann::json::parse(runCommand("lumivox list parts '" + model.string() + "' --json").output);
   CHECK(json.size() == 6);
