@@ -185,6 +185,10 @@ TEST_CASE(
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   CHECK(glm::normalize(snapshot.objects[1].normalToWorld * scene.normals[scene.objects[1].firstVertex]).z ==
         Approx(-1.0f));
+  // The winding of its triangles in the world, by which surfaces shine and are drawn, agrees.
+  const std::uint32_t* triangle = &scene.indices[scene.objects[1].parts[0].firstIndex];
+  const auto corner = [&](int k) { return placed(1, triangle[k] - scene.objects[1].firstVertex); };
+  CHECK(glm::cross(corner(1) - corner(0), corner(2) - corner(0)).z < 0.0);
 }
 
 TEST_CASE("primitives of a mesh are parts of one object, which use and without select by material") {
@@ -326,6 +330,19 @@ TEST_CASE("textures of metalness, emission and vertex colours become their means
                                        positions, colours)))
           .load();
   CHECK(glm::distance(coloured.materials.at(0).diffuse, 0.8f * glm::vec3(1 / 3.0f, 1 / 3.0f, 0)) < 1e-6f);
+}
+
+TEST_CASE("what a scene cannot show of lights and cameras is told") {
+  GltfWriter writer;
+  const std::string body =
+      triangleBody(writer, R"(,"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}})");
+  const std::string file = writer.gltf(
+      body + R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[)"
+             R"({"type":"point","range":2}]}},"cameras":[{"type":"orthographic","orthographic":)"
+             R"({"xmag":1,"ymag":1,"zfar":2,"znear":1}}])");
+  const std::string log = OneModel("m.gltf", file).logged().second;
+  CHECK_THAT(log, Tells("beyond their range"));
+  CHECK_THAT(log, Tells("warning", "orthographic cameras"));
 }
 
 TEST_CASE("each way in which a glTF file can be wrong gives one error with its JSON pointer or byte") {

@@ -5,6 +5,7 @@
 #include "lumivox/base/random.h"
 #include "lumivox/reference/path_tracer.h"
 #include "reference/sampling.h"
+#include "support/placed.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
@@ -148,7 +149,7 @@ TEST_CASE("an emissive surface shines from its front side only") {
   CHECK(seen(0.5, 1.0f) == 2.0);
   CHECK(seen(2.0, -1.0f) == 0.0);
   // Mirrored as a whole it still shines away from the same side of the surface: now upwards.
-  builder.scene.objects.back().placement = glm::dmat4(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 2, 0, 1);
+  place(builder.scene, builder.scene.objects.back(), {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 2, 0, 1});
   CHECK(seen(0.5, 1.0f) == 0.0);
   CHECK(seen(2.0, -1.0f) == 2.0);
 }

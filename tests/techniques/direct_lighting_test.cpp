@@ -1,6 +1,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "support/form_factors.h"
+#include "support/placed.h"
 #include "support/techniques.h"
 
 using namespace lumivox;
@@ -121,6 +122,19 @@ TEST_CASE("an emissive triangle is bright from its front and dark from its back"
   builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
   CHECK(direct(builder.scene).at(4, 4, 0) == Approx(3.0f));
   builder.look({0, -3, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
+  CHECK(direct(builder.scene).at(4, 4, 0) == 0.0f);
+}
+
+TEST_CASE("an area light that its placement mirrors shines from the same side of its surface") {
+  // Turned over by the mirror at y = 1/2, the lamp above the floor faces down: seen from below it is bright.
+  SceneBuilder builder = floorFromAbove(0.5f, 8);
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.0f, 3.0f));  // faces up
+  place(builder.scene, builder.scene.objects.back(), {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1});
+  builder.look({0, 0.5, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
+  CHECK(direct(builder.scene).at(4, 4, 0) > 0.1f);
+  builder.look({0, 0.5, 0}, {0, 1, 0}, {0, 0, -1}, 0.5, 8, 8);
+  CHECK(direct(builder.scene).at(4, 4, 0) == Approx(3.0f));
+  builder.look({0, 3, 0}, {0, 1, 0}, {0, 0, -1}, 0.5, 8, 8);
   CHECK(direct(builder.scene).at(4, 4, 0) == 0.0f);
 }
 

@@ -9,6 +9,7 @@
 #include "support/facts.h"
 #include "support/half_masked_sheet.h"
 #include "support/meshes.h"
+#include "support/placed.h"
 #include "support/scene_builder.h"
 #include "support/surface_elements.h"
 
@@ -371,7 +372,8 @@ TEST_CASE("holes of masks have no elements, and an element has the mean colour o
 
 TEST_CASE("a mirrored body keeps its front sides") {
   Scene scene = boxAndSphere();
-  for (Object& object : scene.objects) object.placement = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
+  for (Object& object : scene.objects)
+    place(scene, object, glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
   const Elements texels = elementsOf(scene, {{"elements", 400}});
   for (std::uint32_t leaf = 0; leaf < texels.tree().leafCount; ++leaf) {
     const std::uint32_t object = texels.tree().objectOfNode[leaf];

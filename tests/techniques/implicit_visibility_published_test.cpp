@@ -10,6 +10,7 @@
 #include "support/facts.h"
 #include "support/half_masked_sheet.h"
 #include "support/kept_table.h"
+#include "support/placed.h"
 #include "support/scene_builder.h"
 #include "support/surface_elements.h"
 
@@ -149,7 +150,7 @@ TEST_CASE(
   }
   SECTION("of what a placement mirrors") {
     SceneBuilder builder = oneTriangle();
-    builder.scene.objects[0].placement = glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1));
+    place(builder.scene, builder.scene.objects[0], glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1)));
     Shown shown(builder.scene);
     checkShowsPositions(shown);
   }

@@ -13,6 +13,7 @@
 #include "support/facts.h"
 #include "support/half_masked_sheet.h"
 #include "support/kept_table.h"
+#include "support/placed.h"
 #include "support/virtual_area_lights.h"
 
 using namespace lumivox;
@@ -301,7 +302,7 @@ TEST_CASE(
   }
   SECTION("of what a placement mirrors") {
     SceneBuilder builder = oneTriangle({{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}}, 1.2);
-    builder.scene.objects[0].placement = glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1));
+    place(builder.scene, builder.scene.objects[0], glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1)));
     check(builder.scene, 0.0);
   }
   SECTION("of a sheet whose left half a mask cuts away") {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/one_mesh.h"
 #include "lumivox/base/file.h"
 #include "lumivox/scene/scene.h"
 #include "support/facts.h"
@@ -60,6 +61,24 @@ TEST_CASE("import writes a canonical scene whose camera, lights and materials ar
   CHECK(glm::distance(scene.lights[1].direction, glm::dvec3(0, -1, 0)) < 1e-6);
   CHECK(scene.lights[2].power.g == Approx(0.1f));
   CHECK(scene.lights[2].outerAngle == Approx(0.5f).epsilon(1e-5));
+}
+
+TEST_CASE("import writes a colour image as a mask only where its alpha cuts holes") {
+  const TemporaryDirectory folder;
+  test::GltfWriter writer;
+  const std::string positions = std::to_string(writer.numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3"));
+  const auto model = folder.write(
+      "m.gltf",
+      writer.gltf(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":)" + positions +
+                  R"(},"material":0}]}],"materials":[{"name":"leaf","alphaMode":"MASK",)"
+                  R"("pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}}}],)"
+                  R"("textures":[{"source":0}],"images":[{"uri":"leaf.tga"}])"));
+  const auto text = folder.path() / "m.scene";
+  for (const int channels : {3, 4}) {
+    folder.write("leaf.tga", test::tga(1, 1, channels, {9, 9, 9, 9}));
+    REQUIRE(runCommand("lumivox import '" + model.string() + "' -o '" + text.string() + "'").exitCode == 0);
+    CHECK((readFile(text).find("mask") != std::string::npos) == (channels == 4));
+  }
 }
 
 TEST_CASE("import adds a camera and a sky to a model without them, and refuses what is no model") {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -128,6 +129,11 @@ class GltfAccessor {
   bool normalised_ = false;
   std::vector<std::uint32_t> sparseIndices_;
   std::string_view sparseValues_;
+};
+
+/// What of a model a scene cannot show: dropped wholly, or reduced to something simpler.
+struct GltfLosses {
+  std::set<std::string> dropped, reduced;
 };
 
 }  // namespace lumivox

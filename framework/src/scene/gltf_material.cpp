@@ -166,6 +166,7 @@ ModelMaterial GltfMaterials::converted(std::size_t index, const glm::vec3& colou
     material.metallic *= mean.b;
   }
   if (extensionOf(source, "KHR_materials_unlit")) {
+    losses_.reduced.insert("unlit surfaces are lit as diffuse ones");
     result.values.diffuse = material.baseColour;
   } else {
     MetallicRoughness tinted = material;

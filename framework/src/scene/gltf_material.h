@@ -25,11 +25,6 @@ struct TexcoordUse {
   glm::vec2 operator()(const glm::vec2& texcoord) const;
 };
 
-/// What of a model the materials cannot show: dropped wholly, or reduced to something simpler.
-struct GltfLosses {
-  std::set<std::string> dropped, reduced;
-};
-
 class GltfMaterials {
  public:
   GltfMaterials(GltfDocument& document, Hasher& hasher, GltfLosses& losses)

@@ -49,8 +49,8 @@ class GltfLoader {
       if (mesh) addNode(node, *mesh);
     }
     findings_.report(document_.file(), options_.strict);
-    model_.cameras = readGltfCameras(document_, nodes_);
-    model_.lights = readGltfLights(document_, nodes_);
+    model_.cameras = readGltfCameras(document_, nodes_, losses_);
+    model_.lights = readGltfLights(document_, nodes_, losses_);
     model_.motions = std::move(nodes_.motions);
     model_.materials = std::move(materials_).table();
     tellLosses();

@@ -270,7 +270,7 @@ GltfNodes readGltfNodes(GltfDocument& document, const ModelOptions& options) {
   return NodeReader(document, options).run();
 }
 
-std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes& nodes) {
+std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes& nodes, GltfLosses& losses) {
   const GltfValue root = document.root();
   const AnimatedModel& model = *nodes.animated;
   constexpr std::size_t kMostViews = 1024;
@@ -279,7 +279,10 @@ std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes
     const auto index = root.item("nodes", node).index("camera", root.count("cameras"), "cameras");
     if (!index) continue;
     const auto perspective = root.item("cameras", *index).find("perspective");
-    if (!perspective) continue;  // an orthographic camera, which has no eye
+    if (!perspective) {
+      losses.dropped.insert("orthographic cameras");  // they have no eye
+      continue;
+    }
     ModelCamera camera;
     camera.name = nodes.names[node];
     // The range of a scene text.
@@ -301,7 +304,7 @@ std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes
   return result;
 }
 
-std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes) {
+std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes, GltfLosses& losses) {
   std::vector<Light> result;
   const GltfValue root = document.root();
   const auto lightsOf = [](const GltfValue& value) {
@@ -315,6 +318,7 @@ std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes
     if (!use) continue;
     const GltfValue source =
         lights->item("lights", use->member("light").asIndex(lights->count("lights"), "lights"));
+    if (source.has("range")) losses.reduced.insert("lights reach beyond their range");
     Light light;
     light.name = nodes.names[node];
     const std::string type = source.member("type").asText();

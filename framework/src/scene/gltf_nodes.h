@@ -23,10 +23,10 @@ struct GltfNodes {
 /// Reads nodes, skins and the animation that plays. Refuses cycles and nodes with two parents.
 GltfNodes readGltfNodes(GltfDocument& document, const ModelOptions& options);
 
-std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes& nodes);
+std::vector<ModelCamera> readGltfCameras(GltfDocument& document, const GltfNodes& nodes, GltfLosses& losses);
 
 /// KHR_lights_punctual. Candela and lux become W/sr and W/m^2 by the luminous efficacy of green light.
-std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes);
+std::vector<Light> readGltfLights(GltfDocument& document, const GltfNodes& nodes, GltfLosses& losses);
 
 /// lm/W at 555 nm: what exporters multiply radiant units with.
 inline constexpr double kLuminousEfficacy = 683.0;

@@ -241,11 +241,20 @@ class Loader {
       for (std::uint32_t i = 0; i < run.indexCount; ++i) {
         scene_.indices.push_back(model.indices[run.firstIndex + i] + firstVertex);
       }
+      // A mirroring placement reverses the winding: reversed here once, it tells the front side in the world.
+      if (isMirrored(object)) {
+        for (std::size_t i = scene_.indices.size() - run.indexCount; i + 2 < scene_.indices.size(); i += 3)
+          std::swap(scene_.indices[i + 1], scene_.indices[i + 2]);
+      }
     }
     if (object.parts.empty()) return;
     object.placedBounds = placedBounds(object);
     if (mesh.sequence) object.sequence = sequenceOf(*mesh.sequence, model, part);
     scene_.objects.push_back(std::move(object));
+  }
+
+  static bool isMirrored(const Object& object) {
+    return glm::determinant(glm::dmat3(object.placement)) < 0.0;
   }
 
   static std::string objectName(const MeshText& mesh, const Model& model, const ModelObject& part) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/image.h"
 #include "lumivox/scene/model_animation.h"
 #include "scene/description.h"
 #include "scene/model_files.h"
@@ -26,6 +27,10 @@ ModelContents::UsedMaterial usedMaterial(const ModelMaterial& source) {
     else
       *file = image->file;
   }
+  // As a mask a scene text takes the first channel of an image without alpha; there it covers everything.
+  if (source.masksByAlphaOnly && !result.mask.empty() && std::filesystem::exists(result.mask) &&
+      readByteImage(result.mask).channels % 2 == 1)
+    result.mask.clear();
   return result;
 }
 

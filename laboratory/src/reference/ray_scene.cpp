@@ -83,8 +83,6 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
       normals.push_back(length > 0.0f ? turned / length : glm::vec3(0.0f));
       texcoords.push_back(scene.texcoords[source]);
     }
-    // A mirroring placement reverses the winding; the front side stays the same side of the surface.
-    const bool mirrored = glm::determinant(glm::mat3(state.toWorld)) < 0.0f;
     for (const Part& part : object.parts) {
       const bool cut = scene.materials[static_cast<std::size_t>(part.material)].maskTexture >= 0;
       for (std::uint32_t k = part.firstIndex; k + 2 < part.firstIndex + part.indexCount; k += 3) {
@@ -93,8 +91,7 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
           return scene.indices[k + n] - object.firstVertex + base;
         };
         (cut ? masked : plain)
-            .push_back({{vertex(0), vertex(mirrored ? 2 : 1), vertex(mirrored ? 1 : 2)},
-                        static_cast<std::uint32_t>(part.material)});
+            .push_back({{vertex(0), vertex(1), vertex(2)}, static_cast<std::uint32_t>(part.material)});
       }
     }
   }

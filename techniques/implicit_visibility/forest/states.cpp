@@ -15,10 +15,7 @@ namespace {
 class PlacedObject {
  public:
   PlacedObject(const Scene& scene, const SceneSnapshot& snapshot, std::uint32_t object)
-      : scene_(&scene),
-        state_(&snapshot.objects[object]),
-        first_(scene.objects[object].firstVertex),
-        side_(glm::determinant(glm::mat3(state_->toWorld)) < 0.0f ? -1.0f : 1.0f) {}
+      : scene_(&scene), state_(&snapshot.objects[object]), first_(scene.objects[object].firstVertex) {}
 
   glm::vec3 position(std::uint32_t vertex) const {
     const glm::vec3& local =
@@ -34,11 +31,10 @@ class PlacedObject {
     const std::uint32_t* at = &scene_->indices[3 * triangle];
     return {position(at[0]), position(at[1]), position(at[2])};
   }
-  /// Vector along the front side's normal with twice the triangle's area as its length. A mirroring placement
-  /// reverses the winding; the front side stays with the surface.
+  /// Vector along the front side's normal with twice the triangle's area as its length.
   glm::vec3 doubleArea(std::uint32_t triangle) const {
     const auto [a, b, c] = corners(triangle);
-    return side_ * glm::cross(b - a, c - a);
+    return glm::cross(b - a, c - a);
   }
   static glm::vec3 unit(const glm::vec3& vector) {
     const float length = glm::length(vector);
@@ -49,7 +45,6 @@ class PlacedObject {
   const Scene* scene_;
   const ObjectState* state_;
   std::uint32_t first_;
-  float side_;
 };
 
 class StateMaker {

@@ -103,10 +103,7 @@ SurfaceCandidates candidatesOn(const Scene& scene, const std::vector<Facet>& fac
     before += facet.area;
     const bool isLast = f + 1 == facets.size();
     const auto [a, b, c] = placedCorners(scene, facet.object, facet.triangle);
-    // A mirroring placement reverses the winding; the front side stays with the surface.
-    const double side =
-        glm::determinant(glm::dmat3(scene.objects[facet.object].placement)) < 0.0 ? -1.0 : 1.0;
-    const glm::vec3 normal(side * glm::normalize(glm::cross(b - a, c - a)));
+    const glm::vec3 normal(glm::normalize(glm::cross(b - a, c - a)));
     RandomStream random(0, facet.triangle);
     const double shiftX = static_cast<double>(random.uniform()),
                  shiftY = static_cast<double>(random.uniform());

@@ -12,10 +12,7 @@ namespace {
 class MovedObject {
  public:
   MovedObject(const Scene& scene, const SceneSnapshot& snapshot, std::size_t object)
-      : scene_(&scene),
-        state_(&snapshot.objects[object]),
-        object_(&scene.objects[object]),
-        side_(glm::determinant(glm::mat3(state_->toWorld)) < 0.0f ? -1.0f : 1.0f) {}
+      : scene_(&scene), state_(&snapshot.objects[object]), object_(&scene.objects[object]) {}
 
   /// Whether triangles may stretch: they deform, or their node may be scaled.
   bool deforms() const { return object_->sequence.has_value() || object_->animation != nullptr; }
@@ -29,10 +26,9 @@ class MovedObject {
       return glm::vec3(glm::dmat3(object_->placement) * glm::dvec3(scene_->positions[vertex]));
     });
   }
-  /// Vector along the front side's normal. A mirroring placement reverses the winding; the front side stays
-  /// with the surface.
-  glm::vec3 frontOf(const std::array<glm::vec3, 3>& corners) const {
-    return side_ * glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  /// Vector along the front side's normal.
+  static glm::vec3 frontOf(const std::array<glm::vec3, 3>& corners) {
+    return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   }
   /// The interpolated normal, not of unit length.
   glm::vec3 shadingNormal(const SurfacePlace& place) const {
@@ -59,7 +55,6 @@ class MovedObject {
   const Scene* scene_;
   const ObjectState* state_;
   const Object* object_;
-  float side_;
 };
 
 /// The largest growth of lengths in a triangle, and the growth of its area.
