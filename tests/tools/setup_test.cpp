@@ -131,7 +131,9 @@ TEST_CASE("./run and ./test set up what they need and pass their arguments on; a
   INFO(alone.errors);
   CHECK(alone.output == "lumivox report scenes/cornell.scene --budget 60s\n");
   CHECK(contains(alone.errors, "ninja laboratory\n"));
-  CHECK(run("run render 'a b' -o c").output == "lumivox render a b -o c\n");
+  const auto render = run("run render 'a b' -o c");
+  CHECK(render.output == "lumivox render a b -o c\n");
+  CHECK(contains(render.errors, "ninja laboratory lumivox_volume\n"));
   const auto exporter = run("run vdbexport --list a.vdb");
   CHECK(exporter.output == "vdbexport --list a.vdb\n");
   CHECK(contains(exporter.errors, "ninja laboratory vdbexport\n"));
@@ -142,7 +144,7 @@ TEST_CASE("./run and ./test set up what they need and pass their arguments on; a
   const auto none = run("test -R absent");
   CHECK(none.exitCode == 1);
   CHECK(contains(none.errors, "no case matches 'absent'"));
-  CHECK(contains(run("run view a.scene").errors, "ninja laboratory lumivox_view\n"));
+  CHECK(contains(run("run view a.scene").errors, "ninja laboratory lumivox_volume lumivox_view\n"));
   CHECK(contains(tests.errors, "ninja all\n"));
 }
 
