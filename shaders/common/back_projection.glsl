@@ -1,5 +1,12 @@
 // Radiance of the surface at the hit point of a ray, read from the reflective shadow maps: thesis 004, Sec. 3.2.3 and Listing 4.49.
 #include "common/lights.glsl"
+#ifndef MAP_LOBES
+#define MAP_LOBES 0  // 1: the map holds lobes, which are among its flux
+#endif
+#if MAP_LOBES
+#include "common/brdf.glsl"
+layout(binding = 13) uniform sampler2DArray rsmSpecular;
+#endif
 
 layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
 layout(binding = 3) uniform sampler2DArray rsmPosition;
@@ -46,7 +53,21 @@ bool showsPoint(LightSample light, ivec3 texel, float depth, vec3 point, vec3 to
 vec3 diffuseOfTexel(ivec3 texel) { return texelFetch(rsmFlux, texel, 0).rgb / (kPi * texelFetch(rsmNormal, texel, 0).w); }
 
 vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, vec3 toReceiver) {
-  return showsPoint(light, texel, depth, point, toReceiver) ? diffuseOfTexel(texel) : vec3(0.0);
+  if (!showsPoint(light, texel, depth, point, toReceiver)) return vec3(0.0);
+  vec3 radiance = diffuseOfTexel(texel);
+#if MAP_LOBES
+  // The lobe in this direction, in place of what it reflects into all directions alike.
+  vec4 specular = texelFetch(rsmSpecular, texel, 0);
+  if (any(greaterThan(specular.rgb, vec3(0.0)))) {
+    vec3 normal = texelFetch(rsmNormal, texel, 0).xyz, toLight;
+    vec3 perpendicular = arrivingIrradiance(light, texelFetch(rsmPosition, texel, 0).xyz, toLight);
+    float cosine = max(dot(normal, toLight), 0.0);
+    vec3 lobe = phongLobe(specular.rgb, specular.w, normal, normalize(toReceiver), toLight);
+    radiance += perpendicular * cosine * (lobe - specular.rgb * (phongAlbedo(specular.w, cosine) / kPi));
+  }
+  radiance = max(radiance, vec3(0.0));
+#endif
+  return radiance;
 }
 
 // Layer and position, in texels, of a point in the view of a light; false outside the view. `depth`: along the view direction, m.

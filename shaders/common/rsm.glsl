@@ -3,11 +3,11 @@
 #define LUMIVOX_RSM
 #include "common/constants.glsl"
 
-// A patch of a surface that reflects light diffusely.
+// A patch of a surface that reflects light, diffusely unless it has a lobe.
 struct SurfaceLight {
   vec4 positionArea;  // xyz posWorld, w area of the patch, m^2
-  vec4 normal;        // xyz unit, on the reflecting side
-  vec4 flux;          // rgb reflected flux, W
+  vec4 normal;        // xyz unit, on the reflecting side; w 0, or direction and width of a lobe (surface_lobe.glsl)
+  vec4 flux;          // rgb reflected flux, W, of both lobes; w 0, or the flux that the lobe would reflect at normal incidence, packed
 };
 
 // Share of a disc's flux that arrives on each square metre of a surface at posWorld, 1/m^2, without visibility: the form factor of the disc

@@ -7,6 +7,8 @@
 #pragma lumivox axis RADIANCE none map voxels
 #pragma lumivox axis OCCLUSION 0 1
 #pragma lumivox axis FETCHES 0 1
+#pragma lumivox axis MAP_LOBES 0 1
+#pragma lumivox require !MAP_LOBES || RADIANCE == map
 #pragma lumivox require ARRIVING || OCCLUSION || FETCHES
 #pragma lumivox require ARRIVING || RADIANCE == none
 #include "common/cones.glsl"

@@ -1,6 +1,7 @@
 #version 450
 // Chooses texels in proportion to the luminance of their flux: sample j takes the texel at the share (j + 1/2) / n of the cumulative flux.
 // Division by the probability makes the sum over the samples an estimate of the sum over all texels, without bias in the limit.
+#pragma lumivox axis GLOSSY 0 1  // the map has lobes
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "sum_tree.glsl"

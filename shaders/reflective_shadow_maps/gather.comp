@@ -2,7 +2,12 @@
 // Dachsbacher & Stamminger 2005, Sec. 3.2 and 4.2: one-bounce light at the visible surfaces as the sum over texels of the reflective
 // shadow map, without occlusion between texel and surface.
 #pragma lumivox axis METHOD lights all projected
+#pragma lumivox axis GLOSSY 0 1  // lights may have lobes
+#pragma lumivox require METHOD == lights || !GLOSSY
 #include "common/rsm.glsl"
+#if GLOSSY
+#include "common/surface_lobe.glsl"
+#endif
 #if METHOD == METHOD_PROJECTED
 #include "common/lights.glsl"
 #endif
@@ -110,7 +115,13 @@ void main() {
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
 #if METHOD == METHOD_LIGHTS
-    for (int i = first; i < first + count; ++i) irradiance += surfaceLightIrradiance(taken[i], position.xyz, normal);
+    for (int i = first; i < first + count; ++i) {
+      SurfaceLight light = taken[i];
+#if GLOSSY
+      light.flux.rgb = fluxTowards(light, position.xyz);
+#endif
+      irradiance += surfaceLightIrradiance(light, position.xyz, normal);
+    }
 #elif METHOD == METHOD_ALL
     for (int row = first; row < first + count; ++row) {
       // A sum per row limits the rounding error of a million small addends.

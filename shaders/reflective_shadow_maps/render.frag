@@ -4,9 +4,14 @@
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis SURFACES 0 1  // what the surfaces reflect is kept beside their flux
 #pragma lumivox axis GLOSSY 0 1    // their Phong lobe too
-#pragma lumivox require SURFACES || !GLOSSY
+#pragma lumivox axis LOBES 0 1     // the flux holds what Phong lobes reflect, too
+#pragma lumivox require !SURFACES || !LOBES
+#pragma lumivox require SURFACES || LOBES || !GLOSSY
 #define SCENE_MATERIALS
 #include "common/lights.glsl"
+#if LOBES
+#include "common/brdf.glsl"
+#endif
 #include "common/scene.glsl"
 #include "cross_section.glsl"
 
@@ -34,9 +39,9 @@ layout(location = 1) out vec4 outNormal;
 layout(location = 2) out vec4 outFlux;
 #if SURFACES
 layout(location = 3) out vec4 outAlbedo;
-#if GLOSSY
-layout(location = 4) out vec4 outSpecular;
 #endif
+#if GLOSSY
+layout(location = 3 + SURFACES) out vec4 outSpecular;
 #endif
 
 // At more grazing angles the patch of a texel does not grow further: one texel cannot represent a longer patch.
@@ -65,11 +70,17 @@ void main() {
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
   // The flux through the cross-section, independent of the slant: exact even if the patch is seen edge-on.
-  outFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
+  vec3 reflected = albedo;
+#if LOBES
+  // Deviates: the paper's surfaces are diffuse. The texel's light is right in sum; readers of the lobe set its direction right.
+  vec4 specular = materials[materialIndex].specular;
+  reflected += specular.rgb * phongAlbedo(specular.w, max(dot(normal, toLight), 0.0));
+#endif
+  outFlux = vec4(reflected * perpendicular * crossSection, float(lightIndex));
 #if SURFACES
   outAlbedo = vec4(albedo, 1.0);
+#endif
 #if GLOSSY
   outSpecular = materials[materialIndex].specular;
-#endif
 #endif
 }

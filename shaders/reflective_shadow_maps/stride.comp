@@ -1,5 +1,6 @@
 #version 450
 // Regular sub-sampling: the texel in the middle of each square of `stride` x `stride` texels of a layer becomes a light for the square.
+#pragma lumivox axis GLOSSY 0 1  // the map has lobes
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "taken.glsl"

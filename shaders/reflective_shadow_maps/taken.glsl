@@ -3,6 +3,10 @@
 #define LUMIVOX_TAKEN
 #include "common/rsm.glsl"
 #include "cross_section.glsl"
+#if GLOSSY
+#include "common/surface_lobe.glsl"
+layout(binding = 3) uniform sampler2DArray rsmSpecular;
+#endif
 
 layout(binding = 0) uniform sampler2DArray rsmPosition;
 layout(binding = 1) uniform sampler2DArray rsmNormal;
@@ -22,7 +26,18 @@ SurfaceLight texelLight(ivec3 texel, float copies, int kindOfArea) {
   if (kindOfArea == kAreaShared) area *= partOfLight(lights[int(flux.w)]);
   if (kindOfArea == kAreaFacing && area > 0.0)
     area = crossSectionOf(lights[int(flux.w)], posWorld, vec2(texel.xy) + 0.5 - 0.5 * vec2(textureSize(rsmFlux, 0).xy));
-  return SurfaceLight(vec4(posWorld, area * copies), vec4(normalArea.xyz, 0.0), vec4(flux.rgb * copies, 0.0));
+  SurfaceLight result = SurfaceLight(vec4(posWorld, area * copies), vec4(normalArea.xyz, 0.0), vec4(flux.rgb * copies, 0.0));
+#if GLOSSY
+  vec4 specular = texelFetch(rsmSpecular, texel, 0);
+  if (any(greaterThan(specular.rgb, vec3(0.0))) && normalArea.w > 0.0) {
+    LightSample light = lights[int(flux.w)];
+    vec3 toLight, perpendicular = arrivingIrradiance(light, posWorld, toLight);
+    float crossSection = crossSectionOf(light, posWorld, vec2(texel.xy) + 0.5 - 0.5 * vec2(textureSize(rsmFlux, 0).xy));
+    result.normal.w = packLobe(reflect(-toLight, normalArea.xyz), specular.w);
+    result.flux.w = packFlux(specular.rgb * perpendicular * (crossSection * copies));
+  }
+#endif
+  return result;
 }
 
 #endif

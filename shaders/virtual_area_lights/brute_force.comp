@@ -1,8 +1,12 @@
 #version 450
 // Every light at every pixel, without occlusion: the reference for the time and the error of sparse points (Sec. 6, Fig. 5).
 #pragma lumivox axis LOBE diffuse glossy
+#pragma lumivox axis LOBED 0 1  // lights may have lobes
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "discs.glsl"
+#if LOBED
+#include "common/surface_lobe.glsl"
+#endif
 
 const int kChunk = 128;  // as in gather.comp: a separate sum per chunk keeps small addends
 
@@ -39,6 +43,9 @@ void main() {
       vec3 sum = vec3(0.0);
       for (int i = first; i < min(first + kChunk, firstLight + lights); ++i) {
         SurfaceLight light = surfaceLights[i];
+#if LOBED
+        light.flux.rgb = fluxTowards(light, position.xyz);
+#endif
 #if LOBE == LOBE_DIFFUSE
         sum += surfaceLightIrradiance(light, position.xyz, normal);
 #else

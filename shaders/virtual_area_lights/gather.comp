@@ -5,11 +5,16 @@
 #pragma lumivox axis LOBE diffuse glossy
 #pragma lumivox axis METHOD cached shared
 #pragma lumivox axis PUBLISHED 0 1
+#pragma lumivox axis LOBED 0 1  // lights may have lobes
+#pragma lumivox require !PUBLISHED || !LOBED
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "surface_points.glsl"
 #include "discs.glsl"
 #include "light.glsl"
+#if LOBED
+#include "common/surface_lobe.glsl"
+#endif
 
 const int kChunk = 128;  // K_cache, Sec. 4.2; gather.cpp
 
@@ -48,6 +53,9 @@ void add(Receiver point, SurfaceLight light, inout Sums sums) {
   vec3 offset = light.positionArea.xyz - point.position;
   float area = light.positionArea.w;
   if (area <= 0.0) return;
+#if LOBED
+  light.flux.rgb = fluxTowards(light, point.position);
+#endif
   vec3 exitance = light.flux.rgb / area;
   float weight = smallWeight;
 #if LOBE == LOBE_DIFFUSE

@@ -184,6 +184,7 @@ class GatherPass : public Pass {
                                                   : gather::Variant::radianceNone,
                                   .occlusion = occlusion.wanted(),
                                   .fetches = fetches.wanted(),
+                                  .mapLobes = fromMap && map->specular != nullptr,
                                   .bitRule = method.axis()};
     const shader::BoundProgram& program = frame.program(variant, constantsOf(frame));
     // Read only after earlier frames, but always bound.
@@ -203,6 +204,7 @@ class GatherPass : public Pass {
                              gather::earlierLost(earlier(lost), gpu::Sampling::nearest),
                              gather::earlierOpen(earlier(open), gpu::Sampling::nearest)};
     if (fromMap) bound.add(ReflectiveShadowMapBinding(*map));
+    if (variant.mapLobes) bound.add(gather::rsmSpecular(map->specular, gpu::Sampling::nearest));
     if (voxels.present() && radiance == Radiance::voxels) {
       bound.add(gather::radianceGrid(voxels->radiance, gpu::Sampling::nearest));
       bound.add(gather::radiance({.radianceUnit = voxels->unit}));

@@ -28,6 +28,14 @@ std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
          static_cast<std::uint32_t>(flux.depth);
 }
 
+/// The map, with its lobes where it has some.
+shader::BindingSet bindingOf(const ReflectiveShadowMap& map) {
+  shader::BindingSet result = ReflectiveShadowMapBinding(map);
+  if (map.specular != nullptr)
+    result.add(shader::SampledSlot{"rsmSpecular"}(map.specular, gpu::Sampling::nearest));
+  return result;
+}
+
 class ChoosePass : public Pass {
   enum class Method { flux, stride };
   enum class Area { surface, shared, facing };  // in the order of taken.glsl
@@ -118,7 +126,7 @@ class ChoosePass : public Pass {
     } while (sizes.back() > 1);
     const SurfaceLights result{room(frame, wanted), wanted, overlapping(frame)};
     const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
-    const ReflectiveShadowMapBinding texels(*map);
+    const shader::BindingSet texels = bindingOf(*map);
     std::uint32_t firstOfAddends = 0, firstOfSums = total;
     for (std::size_t level = 1; level < sizes.size(); ++level) {
       firstOfSums -= sizes[level];
@@ -133,7 +141,7 @@ class ChoosePass : public Pass {
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
     frame.dispatchList(
-        frame.program(choose::kProgram),
+        frame.program(choose::Variant{map->specular != nullptr}),
         {choose::parameters({sizes.front(), levels, count, areaCode(), width, height, rows, together, ways}),
          texels, choose::tree(tree), choose::taken(result.lights)},
         count);
@@ -146,9 +154,9 @@ class ChoosePass : public Pass {
               count = across * down * flux.depth;
     const SurfaceLights result{room(frame, count), count, overlapping(frame)};
     frame.dispatchList(
-        frame.program(stride::kProgram),
+        frame.program(stride::Variant{map->specular != nullptr}),
         {stride::parameters({flux.width, flux.height, stride, across, down, count, areaCode()}),
-         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
+         bindingOf(*map), stride::taken(result.lights)},
         static_cast<std::uint64_t>(count));
     return result;
   }

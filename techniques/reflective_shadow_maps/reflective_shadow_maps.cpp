@@ -22,6 +22,12 @@ class RenderPass : public LightViewPass {
   RenderPass() : LightViewPass(256, within(8, 4096), 64, within(8, 2048)) {}
 
  private:
+  enum class Lobes { directional, diffuse, none };
+
+  Param<Lobes> lobes{
+      this, "lobes", Lobes::diffuse,
+      "what Phong lobes of the seen surfaces add to the flux of 'map'; diffuse: all that they reflect, as if it left to all sides; directional: the same, and the lobes beside it, by which choose and near_field_voxels.gather turn it in its direction; none: nothing. Where 'surfaces' is read nothing, either, since paths reflect by the lobes themselves",
+      published(Lobes::none)};
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};
   Out<ReflectiveShadowMap> surfaces{
       this, "surfaces", "the same map with the albedo and the Phong lobe of what each light sees"};
@@ -37,12 +43,15 @@ class RenderPass : public LightViewPass {
                                .lightCount = views.lightCount(),
                                .layerCount = views.layerCount()};
     std::vector<gpu::TextureRef> colours{result.position, result.normal, result.flux};
-    const render::Variant variant{.surfaces = surfaces.wanted(),
-                                  .glossy = surfaces.wanted() && frame.traits().glossy};
-    map = result;
+    const bool glossy = frame.traits().glossy, own = surfaces.wanted();
+    const render::Variant variant{.surfaces = own,
+                                  .glossy = glossy && (own || lobes == Lobes::directional),
+                                  .lobes = glossy && !own && lobes != Lobes::none};
+    const ReflectiveShadowMap plain = result;
     if (variant.surfaces) colours.push_back(result.albedo = layers("albedos of what lights see"));
     if (variant.glossy) colours.push_back(result.specular = layers("Phong lobes of what lights see"));
-    if (variant.surfaces) surfaces = result;
+    map = own ? plain : result;
+    if (own) surfaces = result;
     if (result.lightCount == 0)
       for (const gpu::TextureRef& texture : colours) texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth =
@@ -114,7 +123,8 @@ class GatherPass : public Pass {
     }
     gather::Parameters parameters{};
     const auto add = [&](int axis, const shader::BindingSet& from) {
-      frame.dispatch(frame.program(gather::Variant{axis}),
+      const bool glossy = axis == gather::Variant::methodLights && frame.traits().glossy;
+      frame.dispatch(frame.program(gather::Variant{axis, glossy}),
                      {gather::parameters(parameters), GBufferBinding(*gbuffer), from,
                       gather::diffuseImage(diffuse->texture)},
                      pixels(frame));

@@ -29,7 +29,7 @@ class BruteForcePass : public Pass {
 
   Image sum(PassContext& frame, int lobe, bool reflects) const {
     Image result{frame.image("light of all lights")};
-    const shader::BoundProgram& program = frame.program(brute_force::Variant{lobe});
+    const shader::BoundProgram& program = frame.program(brute_force::Variant{lobe, frame.traits().glossy});
     bool begins = true;
     for (const In<SurfaceLights>* some : {&lights, &moreLights}) {
       if (!reflects || !*some) continue;

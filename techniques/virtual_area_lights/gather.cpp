@@ -91,7 +91,8 @@ class GatherPass : public Pass {
     const shader::BoundProgram& program = frame.program(gather::Variant{
         .lobe = lobe,
         .method = how == Method::cached ? gather::Variant::methodCached : gather::Variant::methodShared,
-        .published = asPublished});
+        .published = asPublished,
+        .lobed = frame.traits().glossy && !asPublished});
     for (const In<SurfaceLights>* some : all) {
       if (!*some) continue;
       for (int first = 0; first < (*some)->count; first += most) {
