@@ -159,10 +159,13 @@ const std::map<std::string, std::vector<std::string>> kCases = {
     {"media", {"volumetric_smoke"}},
     {"dense grids", {"voxel_cone_tracing", "voxel_cone_tracing_lobes", "voxel_cone_tracing_soft_shadows"}},
     {"a lens", {"voxel_cone_tracing_depth_of_field"}},
-    {"directional grids", {"voxel_cone_tracing_directional", "voxel_cone_tracing_coarse_directional"}},
+    {"directional grids",
+     {"voxel_cone_tracing_directional", "voxel_cone_tracing_directional_all_bounces",
+      "voxel_cone_tracing_coarse_directional"}},
     {"a clipmap", {"voxel_cone_tracing_clipmap"}},
     {"octrees", {"voxel_cone_tracing_octree", "voxel_cone_tracing_octree_photons"}},
-    {"an octree of six faces", {"voxel_cone_tracing_octree_directional"}},
+    {"an octree of six faces",
+     {"voxel_cone_tracing_octree_directional", "voxel_cone_tracing_octree_directional_all_bounces"}},
 };
 
 }  // namespace

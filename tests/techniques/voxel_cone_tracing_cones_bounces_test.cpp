@@ -1,5 +1,6 @@
 // Further bounces by light that cones gather for every fragment.
 #include <cmath>
+#include <optional>
 
 #include "support/cones.h"
 #include "support/kept_table.h"
@@ -134,4 +135,72 @@ TEST_CASE("further bounces see the smoke in the voxels as they see it beside the
   CHECK(clear == Approx(0.5).epsilon(0.04));
   CHECK(beside < 0.4 * clear);
   CHECK(inside == Approx(beside).epsilon(0.12));
+}
+
+namespace {
+
+/// The filtered light of frames in a row in a closed box: six grids that find those of the frame before.
+class Frames {
+ public:
+  explicit Frames(float albedo) { builder_.box({-1, -1, -1}, {1, 1, 1}, builder_.lambert(albedo), true); }
+  /// One more frame, with this ambient light.
+  void render(double ambient = kPi) {
+    const SceneSnapshot snapshot = snapshotOf(builder_.scene, 0.0);
+    PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder_.scene, snapshot);
+    voxels.setParameter("resolution", 16);
+    voxels.run();
+    PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject_directional", builder_.scene,
+                       snapshot);
+    inject.setParameter("ambient", ambient);
+    inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+    if (light_) inject.setInput("before", *light_);
+    inject.run();
+    light_ = filteredDirections(inject.output<DirectionalRadianceGrid>("radiance"));
+  }
+  const Scene& scene() const { return builder_.scene; }
+  const DirectionalRadianceGrid& light() const { return *light_; }
+  std::vector<float> texels() const { return light_->faces[2]->downloadFloats(0); }
+  /// Radiance of all upper faces.
+  double total() const {
+    const std::vector<float> all = texels();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < all.size(); i += 4) sum += all[i];
+    return sum;
+  }
+
+ private:
+  SceneBuilder builder_;
+  std::optional<DirectionalRadianceGrid> light_;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "frame n of a still scene holds the n + 1 reflections of as many bounces in one frame, to the bit") {
+  Frames frames(0.9f);
+  InjectSettings settings;
+  settings.lights = false;
+  settings.ambient = kPi;
+  for (int frame = 0; frame < 4; ++frame) {
+    frames.render();
+    settings.bounces = frame + 1;
+    const auto once = filteredDirections(injectedDirections(frames.scene(), 16, settings));
+    CAPTURE(frame);
+    CHECK(frames.texels() == once.faces[2]->downloadFloats(0));
+  }
+}
+
+TEST_CASE("light that is switched off is gone to 1 % within log 0.01 / log albedo frames") {
+  for (const float albedo : {0.5f, 0.9f}) {
+    Frames frames(albedo);
+    for (int frame = 0; frame < 12; ++frame) frames.render();
+    const double lit = frames.total();
+    const int most = static_cast<int>(std::ceil(std::log(0.01) / std::log(albedo)));
+    frames.render(0.0);
+    CAPTURE(albedo);
+    CHECK(frames.total() > 0.3 * lit);  // a frame later the last frame's light is there still
+    for (int frame = 1; frame < most; ++frame) frames.render(0.0);
+    CHECK(frames.total() < 0.01 * lit);
+    CHECK(frames.total() > 0.0);
+  }
 }

@@ -30,14 +30,34 @@ class Bounces {
  public:
   explicit Bounces(Pass* pass)
       : count_(
-            pass, "bounces", 1, within(1, 256),
+            pass, "bounces", 1, within(1, kMost),
             "number of reflections of the light in the voxels; 1: as published; for each further one, cones gather light at every fragment from the grid of the previous one"),
         cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
   int count() const { return count_; }
+  /// The most reflections of light that a store can hold; `before`: it adds those of all frames before.
+  int most(bool before) const { return before ? kMost : count_; }
   int cones() const { return cones_; }
 
  private:
+  static constexpr int kMost = 256;
   Param<int> count_, cones_;
+};
+
+/// The store that the frame before ended with; a member of a pass. Its light is reflected once more and added
+/// to the direct light, so that frame n of a run holds n + 1 reflections and a still scene comes to all of
+/// them. Without accumulation there is no such store, and nothing is added.
+template <class Store>
+class LightBefore {
+ public:
+  explicit LightBefore(Pass* pass)
+      : before_(
+            pass, "before", Presence::history,
+            "light of the frame before, pre-filtered: cones gather it at every fragment, so that frames in a row come to all bounces; 'bounces' counts those within a frame",
+            Needs::nothing, Levels::all) {}
+  const Store* get() const { return before_.present() ? &*before_ : nullptr; }
+
+ private:
+  In<Store> before_;
 };
 
 /// Injection into grids; members of a pass.
@@ -74,9 +94,9 @@ class Injection {
 
   /// Kept while static geometry and the lights on it stay the same; null where that is unknown.
   template <class MakeRooms>
-  std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, const Bounces& bounces, MakeRooms&& makeRooms) {
+  std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, bool furtherBounces, MakeRooms&& makeRooms) {
     // Every bounce changes all of the light.
-    const std::optional<StaticLight> key = bounces.count() == 1 ? staticLight(frame) : std::nullopt;
+    const std::optional<StaticLight> key = furtherBounces ? std::nullopt : staticLight(frame);
     if (!key) return nullptr;
     return frame.kept("voxels of static geometry in unchanged light", *key, [&] {
       auto result = std::make_shared<KeptGrid>();
@@ -86,14 +106,14 @@ class Injection {
   }
 
   /// Fills the finest levels, one texture for all sides or six for the faces, and their properties in the
-  /// port. `kept`: that of the same textures, or null.
+  /// port. `kept`: that of the same textures, or null. `before`: the light of the frame before, or null.
   template <class Grid>
   void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
-            const Bounces& bounces, KeptGrid* kept, const FaceRule& faces = {}) {
+            const Bounces& bounces, const Grid* before, KeptGrid* kept, const FaceRule& faces = {}) {
     result.grid = placement();
     result.holdsMedia = storesMedia();
     // Every bounce adds less than the one before.
-    const float brightest = brightestOf(frame, result.unit, bounces.count());
+    const float brightest = brightestOf(frame, result.unit, bounces.most(before != nullptr));
 
     OccupiedBricks occupied;
     const bool onlyChanges = kept != nullptr && kept->bricks != nullptr;
@@ -111,19 +131,27 @@ class Injection {
     if (!result.holdsMedia) result.occupied = occupied;
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
     const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : occupied;
+    const auto reflectLightOf = [&](const Grid& store) {
+      if constexpr (std::is_same_v<Grid, RadianceGrid>) {
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(store));
+      } else {
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(store, true));
+      }
+    };
+    // All light of the frame before is reflected once: the sums are the direct light and every bounce of it.
+    if (before != nullptr) reflectLightOf(*before);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, bricks, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
         fillLevels(frame, result, Opacity::facing);
-        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result));
       } else {
         fillLevels(frame, result);
-        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
       }
+      reflectLightOf(result);
       resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
     }
     result.filledLevels = 1;
-    if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
+    if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.most(before != nullptr);
     if (kept == nullptr) return;
     if (!onlyChanges) kept->moment = changes_.momentOfAll(frame, *fragments_);
     kept->bricks = sums.bricks;
@@ -132,15 +160,17 @@ class Injection {
   }
 
   /// Makes the bricks of result.tree, and fills those of the leaves.
-  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces) {
+  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces,
+            const RadianceOctree* before) {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
-    const float brightest = brightestOf(frame, result.unit, bounces.count());
+    const float brightest = brightestOf(frame, result.unit, bounces.most(before != nullptr));
     // Every bounce changes all of the light.
-    if (bounces.count() == 1) result.still = stillIn(frame, result);
+    if (bounces.count() == 1 && before == nullptr) result.still = stillIn(frame, result);
     const VoxelSums sums = leafSums(frame, result);
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    if (before != nullptr) reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(*before, true));
     resolveLeaves(frame, result, sums, addsUp());
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       fillLevels(frame, result);
@@ -316,6 +346,7 @@ class Injection {
 class InjectPass : public Pass {
   Injection injection{this};
   Bounces bounces{this};
+  LightBefore<RadianceGrid> before{this};
   Param<bool> mips{
       this, "mips", true,
       "allocate the coarser levels that 'filter' fills; 'filter_directional' does not need them"};
@@ -330,10 +361,10 @@ class InjectPass : public Pass {
       throw Error(
           "voxel_cone_tracing.inject: further bounces are gathered through coarser levels, for which there is no room; expected 'mips on' or 'bounces 1'");
     const auto rooms = [&] { return injection.rooms(frame, 1, "radiance grid", mips); };
-    const auto kept = injection.keptGrid(frame, bounces, rooms);
+    const auto kept = injection.keptGrid(frame, bounces.most(before.get() != nullptr) > 1, rooms);
     RadianceGrid result;
     result.radiance = (kept != nullptr ? kept->textures : rooms()).front();
-    injection.fill(frame, result, {&result.radiance, 1}, bounces, kept.get());
+    injection.fill(frame, result, {&result.radiance, 1}, bounces, before.get(), kept.get());
     radiance = result;
   }
 };
@@ -343,6 +374,7 @@ class InjectDirectionalPass : public Pass {
 
   Injection injection{this};
   Bounces bounces{this};
+  LightBefore<DirectionalRadianceGrid> before{this};
   Param<float> backWeight{
       this, "back_weight", FaceRule{}.backWeight, within(0.0f, 1.0f),
       "weight of a fragment's back in the mean of a face, where fronts have the weight 1; small, so that the dark inside of a thin wall does not darken its lit face; 0: the backs of sheets are dark"};
@@ -358,10 +390,10 @@ class InjectDirectionalPass : public Pass {
 
   void run(PassContext& frame) override {
     const auto rooms = [&] { return injection.rooms(frame, 6, "radiance grid of one side", true); };
-    const auto kept = injection.keptGrid(frame, bounces, rooms);
+    const auto kept = injection.keptGrid(frame, bounces.most(before.get() != nullptr) > 1, rooms);
     DirectionalRadianceGrid result;
     std::ranges::copy(kept != nullptr ? kept->textures : rooms(), result.faces.begin());
-    injection.fill(frame, result, result.faces, bounces, kept.get(),
+    injection.fill(frame, result, result.faces, bounces, before.get(), kept.get(),
                    {backWeight, opaqueAlong == OpaqueAlong::all});
     radiance = result;
   }
@@ -370,6 +402,7 @@ class InjectDirectionalPass : public Pass {
 class OctreeInjectPass : public Pass {
   Injection injection{this};
   Bounces bounces{this};
+  LightBefore<RadianceOctree> before{this};
   enum class Faces { one, six };
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
   Param<Faces> faces{
@@ -385,7 +418,7 @@ class OctreeInjectPass : public Pass {
     RadianceOctree result;
     result.tree = *tree;
     result.faces = faces == Faces::six ? 6 : 1;
-    injection.fill(frame, result, bounces);
+    injection.fill(frame, result, bounces, before.get());
     radiance = result;
   }
 };
