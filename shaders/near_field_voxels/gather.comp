@@ -38,6 +38,7 @@ layout(std140, binding = 1) uniform Rays {
   int firstRay;          // first ray of this dispatch; raysAtOnce: its number of rays
   int raysAtOnce;
   int framesBefore;      // number of frames in the earlier sums
+  int portion;           // number of the sequence's portion, of `rays` points each, that this frame takes
   float offset;          // of the ray's origin along the normal; see startOf()
   float start;           // of the ray's origin along the ray, voxels
   float reach;           // search distance of light along the ray, measured from start 0, voxels
@@ -85,12 +86,12 @@ uvec2 turnOf(ivec2 at) {
 vec2 pointOf(int i, uvec2 turn) {
   if (hammersley != 0) {
     // (i / n, reversed bits of i). The sequence has only the points of one frame, so every frame shifts it differently.
-    if (framesBefore > 0) turn += hash4(uvec4(turn, uint(framesBefore), seed.x)).xy;
+    if (portion > 0) turn += hash4(uvec4(turn, uint(portion), seed.x)).xy;
     float along = (float(i) + 0.5) / float(rays);
     return vec2(fract(along + unitInterval(turn).x), unitInterval(uvec2(bitfieldReverse(uint(i)) + turn.y)).x);
   }
   // With accumulation, each frame continues the sequence.
-  return unitInterval(wordsOfR2(uint(framesBefore) * uint(rays) + uint(i), turn));
+  return unitInterval(wordsOfR2(uint(portion) * uint(rays) + uint(i), turn));
 }
 
 // The origin of a surface's rays, in voxels.

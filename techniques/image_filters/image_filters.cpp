@@ -6,6 +6,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
+#include "passes.h"
 
 namespace lumivox::image_filters {
 namespace {
@@ -91,7 +92,7 @@ class SmoothPass : public Pass {
     const glm::ivec3 all = pixels(frame);
     const CameraView& camera = frame.snapshot().camera;
     smooth::Parameters parameters{.eye = camera.eye,
-                                  .pixelAngle = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height),
+                                  .pixelAngle = pixelAngleOf(camera),
                                   .every = glm::ivec2(every),
                                   .everyOut = glm::ivec2(1),
                                   .along = glm::ivec2(every > 1 || radius > 0),
@@ -128,7 +129,9 @@ class SmoothPass : public Pass {
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::image_filters;
   registry.describe("Image filters that respect the borders of surfaces",
-                    "Kopf, Cohen, Lischinski & Uyttendaele 2007; Pham & van Vliet 2005");
+                    "Kopf, Cohen, Lischinski & Uyttendaele 2007; Pham & van Vliet 2005; Schied et al. 2017");
   registry.add<SmoothPass>(
       "smooth", "Joint bilateral filter and upsampling of samples at some or all pixels (Kopf et al. 2007)");
+  addAccumulate(registry);
+  addAtrous(registry);
 }

@@ -28,6 +28,7 @@ class GatherPass : public Pass {
   enum class OffsetUnit { plane, diagonal };
   enum class Beyond { grid, radius };
   enum class Radiance { map, voxels };
+  enum class Frames { sum, apart };
   // In the order of their halvings.
   enum class Pixels { full, half, quarter };
 
@@ -41,6 +42,9 @@ class GatherPass : public Pass {
   Param<int> rays{this, "rays", 32, within(1, 1 << 20), "rays per pixel, distributed as the cosine"};
   Param<Pixels> pixelsOf{this, "pixels", Pixels::full,
                          "pixels that send rays; full: all; half: one of 2 x 2; quarter: one of 4 x 4"};
+  Param<Frames> framesOf{
+      this, "frames", Frames::sum,
+      "rays of several frames; sum: added while nothing changes, in runs that accumulate; apart: each frame has rays of its own and their light alone, for a filter over frames"};
   RayMethod method{this};
   Param<Sequence> sequence{
       this, "sequence", Sequence::r2,
@@ -94,7 +98,8 @@ class GatherPass : public Pass {
                      "in r: texels of the stacks that the pixel's rays read"};
 
   Reads readsFrom() const override {
-    return Reads::camera | Reads::environment | Reads::geometry | Reads::history;
+    return Reads::camera | Reads::environment | Reads::geometry | Reads::history |
+           (framesOf == Frames::apart ? Reads::time : Reads::nothing);
   }
   bool uses(const InBase& input) const override {
     if (&input == &map) return arriving.wanted() && radiance == Radiance::map;
@@ -133,6 +138,7 @@ class GatherPass : public Pass {
             .every = every(),
             .rays = rays,
             .framesBefore = framesBefore,
+            .portion = framesOf == Frames::apart ? frame.frameIndex() + frame.accumulated() : framesBefore,
             .offset = offset,
             .start = start,
             .reach = !light          ? never
@@ -163,7 +169,9 @@ class GatherPass : public Pass {
     const gpu::TextureDescription ofSamples{
         .format = gpu::Format::rgba32f, .width = samples.x, .height = samples.y};
     const auto summed = [&](bool wanted, const char* label) {
-      return wanted ? frame.history(ofSamples, label) : History<gpu::TextureRef>{};
+      if (!wanted) return History<gpu::TextureRef>{};
+      return framesOf == Frames::apart ? History<gpu::TextureRef>{nullptr, frame.texture(ofSamples, label)}
+                                       : frame.history(ofSamples, label);
     };
     const auto written = [&](bool wanted, const char* label) {
       return wanted ? frame.texture(ofSamples, label) : nullptr;
@@ -175,7 +183,8 @@ class GatherPass : public Pass {
                           unoccluded = written(occlusion.wanted(), "unoccluded share"),
                           counted = written(fetches.wanted(), "texels that rays read");
     const bool goesOn = (!arriving.wanted() || light.previous) && (!occlusion.wanted() || open.previous);
-    gather::Rays parameters = parametersOf(frame, goesOn ? frame.accumulated() : 0);
+    gather::Rays parameters =
+        parametersOf(frame, goesOn && framesOf == Frames::sum ? frame.accumulated() : 0);
     const bool fromMap = arriving.wanted() && readsMap();
     const gather::Variant variant{.arriving = arriving.wanted(),
                                   .radiance = fromMap ? gather::Variant::radianceMap

@@ -33,6 +33,7 @@ class TracePass : public Pass {
   enum class Order { forward, backward };
   enum class Stuck { push, hit };
   enum class Normals { map, voxels };
+  enum class Frames { sum, apart };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces, where paths begin"};
   In<BinaryGrid> bits{this, "bits", "where rays end: one bit a voxel"};
@@ -47,6 +48,9 @@ class TracePass : public Pass {
   Param<int> samples{this, "samples", 16, within(1, 1 << 20), "paths per pixel and frame"};
   Param<int> bounces{this, "bounces", 2, within(1, kMostBounces),
                      "rays of a path: the indirect bounces that the light makes at most"};
+  Param<Frames> framesOf{
+      this, "frames", Frames::sum,
+      "paths of several frames; sum: added while nothing changes, in runs that accumulate; apart: each frame has paths of its own and their light alone, for a filter over frames"};
   RayMethod method{this};
   Param<Order> order{
       this, "order", Order::forward,
@@ -76,7 +80,10 @@ class TracePass : public Pass {
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
                     "indirect light reflected by the Phong lobe"};
 
-  Reads readsFrom() const override { return Reads::camera | Reads::environment | Reads::history; }
+  Reads readsFrom() const override {
+    return Reads::camera | Reads::environment | Reads::history |
+           (framesOf == Frames::apart ? Reads::time : Reads::nothing);
+  }
   bool uses(const InBase& input) const override { return &input != &attributes || bounces > 1; }
   int indirectBounces() const override { return bounces; }
   std::string checkParameters() const override {
@@ -123,7 +130,11 @@ class TracePass : public Pass {
     const glm::ivec3 size = pixels(frame);
     const Outputs outputs{arriving.wanted(), glossy.wanted() && gbuffer->specular != nullptr};
     const int layers = outputs.reflected ? 4 : 2;
-    const History<gpu::TextureRef> sums = frame.history(layersOf(size, layers), "light of all paths");
+    const bool apart = framesOf == Frames::apart;
+    const char* const label = "light of all paths";
+    const History<gpu::TextureRef> sums =
+        apart ? History<gpu::TextureRef>{nullptr, frame.texture(layersOf(size, layers), label)}
+              : frame.history(layersOf(size, layers), label);
     const int before = sums.previous ? frame.accumulated() : 0;
     if (before > 0)
       frame.dispatch(frame.program(go_on::kProgram),
@@ -135,7 +146,8 @@ class TracePass : public Pass {
     if (outputs.any()) {
       const shader::BindingSet scene = sceneOf(frame);
       Path path = pathOf(frame);
-      path.number = static_cast<std::uint32_t>(before) * paths;
+      path.number =
+          static_cast<std::uint32_t>(apart ? frame.frameIndex() + frame.accumulated() : before) * paths;
       if (order == Order::forward)
         followForward(frame, scene, sums.current, path, outputs);
       else
