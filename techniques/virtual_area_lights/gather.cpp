@@ -3,7 +3,10 @@
 #include <array>
 #include <vector>
 
+#include "directions/point_sight.h"
+#include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "passes.h"
 #include "sparse_texture.h"
@@ -28,6 +31,10 @@ class GatherPass : public Pass {
   In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
   In<SurfaceLights> moreLights{this, "more_lights", Presence::optional,
                                "more virtual area lights, from another pass"};
+  In<PointSight> sight{this, "sight", Presence::optional,
+                       "with 'visibility directions': what the points see, from 'look'"};
+  Param<Visibility> visibility{this, "visibility", Visibility::sphere, kVisibilityMeaning,
+                               published(Visibility::sphere)};
   Param<Method> method{
       this, "method", Method::shared,
       "how the sum over lights is computed; cached: 128 lights in a dispatch, added to the targets; shared: through shared memory of a work group",
@@ -46,7 +53,10 @@ class GatherPass : public Pass {
 
   bool looksBack_ = true;  ///< whether anything reflects towards the eye
 
-  Reads readsFrom() const override { return Reads::partOfCamera; }
+  bool uses(const InBase& input) const override { return &input != &sight || byDirection(); }
+  Reads readsFrom() const override {
+    return byDirection() ? Reads::partOfCamera | Reads::environment : Reads::partOfCamera;
+  }
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     return looksBack_ ? eyeOf(snapshot) : std::vector<float>{};
   }
@@ -56,13 +66,23 @@ class GatherPass : public Pass {
   };
   struct DiffuseKey {
     gpu::TextureRef points;
-    gpu::BufferRef lights, more;
+    gpu::BufferRef lights, more, sight;
+    glm::vec3 environment;
     bool operator==(const DiffuseKey&) const = default;
   };
 
+  bool byDirection() const { return visibility == Visibility::directions; }
+  /// Whether directions are asked: not where nothing occludes.
+  bool asks() const { return byDirection() && sight->nearest; }
+
   void run(PassContext& frame) override {
+    if (byDirection() && !sight.present())
+      throw Error(
+          "virtual_area_lights.gather: 'visibility directions' reads 'sight'; expected it to be connected to a "
+          "pass virtual_area_lights.look");
     const DiffuseKey key{points->position, lights ? lights->lights : nullptr,
-                         moreLights ? moreLights->lights : nullptr};
+                         moreLights ? moreLights->lights : nullptr, asks() ? sight->nearest : nullptr,
+                         asks() ? frame.sceneDescription().environment : glm::vec3(0.0f)};
     const Averaged& diffuse = frame.kept("diffuse light of points", key,
                                          [&] { return gather(frame, gather::Variant::lobeDiffuse); });
     SparseLight result{diffuse.light, diffuse.place, nullptr, nullptr};
@@ -82,39 +102,61 @@ class GatherPass : public Pass {
     int total = 0, added = 0;
     for (const In<SurfaceLights>* some : all)
       if (*some) total += (*some)->count;
-    if (total == 0) return result;
+    const bool sky = asks() && frame.traits().environment;
+    if (total == 0 && !sky) return result;
     const Method how = method;
     const int most = how == Method::cached ? kChunk : kLoopLimit / kChunk * kChunk / 2;
     const std::array<gpu::TextureRef, 3> sums{sparseTexture(frame, *points, "sums of light"),
                                               sparseTexture(frame, *points, "sums of offsets"),
                                               sparseTexture(frame, *points, "sums of squares")};
-    const shader::BoundProgram& program = frame.program(gather::Variant{
-        .lobe = lobe,
-        .method = how == Method::cached ? gather::Variant::methodCached : gather::Variant::methodShared,
-        .published = asPublished,
-        .lobed = frame.traits().glossy && !asPublished});
+    const shader::BoundProgram& program =
+        frame.program(gather::Variant{.lobe = lobe,
+                                      .method = how == Method::cached ? gather::Variant::methodCached
+                                                                      : gather::Variant::methodShared,
+                                      .published = asPublished,
+                                      .lobed = frame.traits().glossy && !asPublished,
+                                      .sight = asks()},
+                      gather::Constants{.environmentMap = asks() ? environmentMapOf(frame) : 0});
+    const auto add = [&](const gpu::BufferRef& some, const gather::Parameters& parameters) {
+      shader::BindingSet bound{gather::parameters(parameters),   SurfacePointsBinding(*points),
+                               gather::surfaceLights(some),      gather::sumImage(sums[0]),
+                               gather::offsetImage(sums[1]),     gather::squareImage(sums[2]),
+                               gather::lightImage(result.light), gather::placeImage(result.place)};
+      if (asks()) {
+        const GridPlacement& grid = points->grid;
+        bound.add(gather::sight(sight->nearest));
+        bound.add(gather::sky({frame.sceneDescription().environment,
+                               grid.voxelSize * glm::length(glm::vec3(grid.resolution))}));
+        bound.add(EnvironmentBinding(frame));
+      }
+      forEachPoint(frame, program, bound, *points);
+    };
+    const float resolved = exponentLimit == ExponentLimit::spacing ? kResolvedBySpacing : 0.0f;
+    if (total == 0)
+      add(frame.emptyElements(gather::surfaceLights, 1, "no lights"),
+          {.eyeWorld = frame.snapshot().camera.eye,
+           .smallWeight = kSmallWeights,
+           .begins = 1,
+           .ends = 1,
+           .resolved = resolved,
+           .factor = factor,
+           .overlapping = 1.0f});
     for (const In<SurfaceLights>* some : all) {
       if (!*some) continue;
       for (int first = 0; first < (*some)->count; first += most) {
         const int count = std::min(most, (*some)->count - first);
         const int before = added;
         added += count;
-        const gather::Parameters parameters{
-            .eyeWorld = frame.snapshot().camera.eye,
-            .firstLight = first,
-            .lights = count,
-            .smallWeight = kSmallWeights / static_cast<float>(total),
-            .begins = before == 0,
-            .ends = added == total,
-            .resolved = exponentLimit == ExponentLimit::spacing ? kResolvedBySpacing : 0.0f,
-            .factor = factor,
-            .overlapping = static_cast<float>((*some)->overlapping)};
-        forEachPoint(frame, program,
-                     {gather::parameters(parameters), SurfacePointsBinding(*points),
-                      gather::surfaceLights((*some)->lights), gather::sumImage(sums[0]),
-                      gather::offsetImage(sums[1]), gather::squareImage(sums[2]),
-                      gather::lightImage(result.light), gather::placeImage(result.place)},
-                     *points);
+        const gather::Parameters parameters{.eyeWorld = frame.snapshot().camera.eye,
+                                            .firstLight = first,
+                                            .lights = count,
+                                            .smallWeight = kSmallWeights / static_cast<float>(total),
+                                            .begins = before == 0,
+                                            .ends = added == total,
+                                            .resolved = resolved,
+                                            .factor = factor,
+                                            .overlapping = static_cast<float>((*some)->overlapping)};
+        add((*some)->lights, parameters);
       }
     }
     return result;

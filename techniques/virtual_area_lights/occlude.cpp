@@ -18,6 +18,8 @@ class OccludePass : public Pass {
   In<SurfaceLights> occluders{this, "occluders", Presence::optional,
                               "discs of other surfaces that occlude too, such as captured ones"};
   Param<bool> occlusion{this, "occlusion", true, "off: the light passes unchanged"};
+  Param<Visibility> visibility{this, "visibility", Visibility::sphere, kVisibilityMeaning,
+                               published(Visibility::sphere)};
   Param<Combine> combine{
       this, "combine", Combine::mask,
       "how several discs occlude together; product: each occludes its share of what the others leave; sum: shares add up; nearest: only the nearest disc; mask: the union, by 64 bits over the light's square",
@@ -33,12 +35,14 @@ class OccludePass : public Pass {
   };
 
   bool uses(const InBase& input) const override {
-    return occlusion || (&input != &points && &input != &occluders);
+    return occludes() || (&input != &points && &input != &occluders);
   }
+
+  bool occludes() const { return occlusion && visibility == Visibility::sphere; }
 
   void run(PassContext& frame) override {
     SparseLight result = *unoccluded;
-    if (occlusion) {
+    if (occludes()) {
       result.diffuse = frame.kept(
           "occluded diffuse light", OccludedKey{result.diffuse, occluders ? occluders->lights : nullptr},
           [&] { return occlude(frame, unoccluded->diffuse, unoccluded->diffusePosition); });

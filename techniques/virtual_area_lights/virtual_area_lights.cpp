@@ -9,6 +9,7 @@ LUMIVOX_TECHNIQUE(registry) {
       "Lensing & Broll 2013");
   addPoints(registry);
   addVertices(registry);
+  addLook(registry);
   addGather(registry);
   addNormalise(registry);
   addOcclude(registry);

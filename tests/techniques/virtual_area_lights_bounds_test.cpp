@@ -49,12 +49,13 @@ float lightest(const FrameResult& frame, const std::string& output) {
 TEST_CASE(
     "only the eye moves: the diffuse lobe and what hides it are kept; only its look turns: so is all else") {
   const Pipeline text = pipeline("virtual_area_lights");
+  const RenderOptions spheres = few(text, {"visibility=sphere"});  // by direction, `occlude` passes all
   const Scene scene = floorAndPanel(0.5f, 20.0f).scene;
   Scene moving = scene, turning = scene;
   moving.cameras.front().keys = {{0.0, {0, 0.6, 2}, {0, 0.3, 0}}, {1.0, {0.5, 0.6, 2}, {0, 0.3, 0}}};
   turning.cameras.front().keys = {{0.0, {0, 0.6, 2}, {0, 0.3, 0}}, {1.0, {0, 0.6, 2}, {0.1, 0.3, 0}}};
   for (const Scene* one : {&moving, &turning}) {
-    PipelineExecutor executor(device(), techniques(), *one, text, few(text));
+    PipelineExecutor executor(device(), techniques(), *one, text, spheres);
     CHECK(ran(executor.render(0.0, 0), "gather"));
     const FrameResult frame = executor.render(1.0, 1);
     for (const char* pass : {"points", "map", "choose"}) CHECK_FALSE(ran(frame, pass));
@@ -65,11 +66,29 @@ TEST_CASE(
         CAPTURE(part);
         CHECK(reused(executor, part));
       }
-    PipelineExecutor alone(device(), techniques(), *one, text, few(text));
+    PipelineExecutor alone(device(), techniques(), *one, text, spheres);
     const FrameResult afresh = alone.render(1.0);
     for (const char* output : {"indirect_diffuse", "indirect_glossy"}) CHECK(same(frame, afresh, output));
     CHECK_FALSE(same(frame, executor.render(0.0, 2), "indirect_glossy"));
   }
+}
+
+TEST_CASE("what points see is found once, however the light moves") {
+  const Pipeline text = pipeline("virtual_area_lights");
+  Scene scene = floorAndPanel(0.5f, 20.0f).scene;
+  LightMotion motion;
+  motion.keys.resize(2);
+  motion.keys[0].position = glm::dvec3(0, 0.9, 0.5);
+  motion.keys[1].time = 1.0;
+  motion.keys[1].position = glm::dvec3(0.5, 0.9, 0.5);
+  scene.lights.front().motion = motion;
+  PipelineExecutor executor(device(), techniques(), scene, text, few(text));
+  CHECK(ran(executor.render(0.0, 0), "look"));
+  const FrameResult frame = executor.render(1.0, 1);
+  CHECK(ran(frame, "gather"));
+  CHECK_FALSE(ran(frame, "look"));
+  PipelineExecutor alone(device(), techniques(), scene, text, few(text));
+  CHECK(same(frame, alone.render(1.0), "indirect_diffuse"));
 }
 
 TEST_CASE(
