@@ -59,7 +59,7 @@ Window windowAt(ivec2 at, vec3 position, vec3 normal) {
         window.past += (luminanceOf(past.rgb) - window.past) / window.pastCount;
       }
     }
-  window.variance = window.count > 1.0 ? squares / (window.count - 1.0) : 0.0;
+  window.variance = window.count > 1.0 ? max(squares, 0.0) / (window.count - 1.0) : 0.0;
   return window;
 }
 

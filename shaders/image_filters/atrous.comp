@@ -81,7 +81,7 @@ void main() {
         vec3 value = texelFetch(lightImage, texel, 0).rgb;
         float weight = kSpline[abs(x)] * kSpline[abs(y)], otherNoise = texelFetch(varianceImage, texel, 0).x;
         if (x != 0 || y != 0) {
-          float range = sigmaLight * sqrt(ofBoth != 0 ? 0.5 * (noise + otherNoise) : noise) + 1e-6 * bright + 1e-20;
+          float range = sigmaLight * sqrt(max(ofBoth != 0 ? 0.5 * (noise + otherNoise) : noise, 0.0)) + 1e-6 * bright + 1e-20;
           float unlike = abs(luminanceOf(value) - bright) / range;
           float steep = abs(dot(slope, vec2(apart * ivec2(x, y))));
           if (guide == kDepth)

@@ -44,7 +44,8 @@ void main() {
       for (int i = 0; i < 4; ++i) {
         ivec2 corner = ivec2(i & 1, i >> 1), texel = first + corner;
         if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) continue;
-        vec4 position2 = texelFetch(positionThen, texel, 0), normal2 = texelFetch(normalThen, texel, 0), light2 = texelFetch(lightThen, texel, 0);
+        vec4 position2 = texelFetch(positionThen, texel, 0), normal2 = texelFetch(normalThen, texel, 0);
+        vec4 light2 = texelFetch(lightThen, texel, 0);
         if (!(position2.w > 0.0) || int(normal2.w + 0.5) != model || !(light2.w > 0.0) || dot(normal2.xyz, facing) < leastCosine ||
             abs(dot(position2.xyz - before, facing)) > width)
           continue;
