@@ -164,6 +164,14 @@ TEST_CASE("levels leave the share of the noise that the squares of their joint k
   }
 }
 
+TEST_CASE("a variance that rounding made negative counts as zero and leaves finite light") {
+  const Image step = imageWhere([](int x, int) { return x < kSize / 2 ? 1.0f : 0.0f; });
+  for (const Settings& form : kForms) {
+    const ImageBuffer light = filtered(plane(), step, imageWhere([](int, int) { return -1e-9f; }), form);
+    for (const float value : light.values()) REQUIRE((value >= 0.0f && value <= 1.0f));
+  }
+}
+
 TEST_CASE("the light's own edges stay where the variance is small, and vanish where it is large") {
   const Image step = imageWhere([](int x, int) { return x < kSize / 2 ? 1.0f : 0.0f; });
   for (const Settings& form : kForms) {
