@@ -112,6 +112,7 @@ const std::set<std::string> kPassedOn{"techniques/voxel_cone_tracing/dense/filte
 const std::map<std::string, int> kWidelyIncluding{
     {"shaders/implicit_visibility/light/display_glossy.comp", 13},
     {"shaders/implicit_visibility/light/reflect_glossy.comp", 14},
+    {"shaders/virtual_area_lights/gather.comp", 12},
     {"shaders/voxel_cone_tracing/add.comp", 11},
     {"shaders/voxel_cone_tracing/clipmap/clipmap_filter.comp", 11},
     {"shaders/voxel_path_tracing/trace.comp", 11},
