@@ -5,7 +5,6 @@
 #pragma lumivox axis SURFACES 0 1  // what the surfaces reflect is kept beside their flux
 #pragma lumivox axis GLOSSY 0 1    // their Phong lobe too
 #pragma lumivox axis LOBES 0 1     // the flux holds what Phong lobes reflect, too
-#pragma lumivox require !SURFACES || !LOBES
 #pragma lumivox require SURFACES || LOBES || !GLOSSY
 #define SCENE_MATERIALS
 #include "common/lights.glsl"
@@ -43,6 +42,9 @@ layout(location = 3) out vec4 outAlbedo;
 #if GLOSSY
 layout(location = 3 + SURFACES) out vec4 outSpecular;
 #endif
+#if SURFACES && LOBES
+layout(location = 4 + GLOSSY) out vec4 outDiffuseFlux;  // for paths, which reflect by the lobes themselves
+#endif
 
 // At more grazing angles the patch of a texel does not grow further: one texel cannot represent a longer patch.
 const float kSmallestCosine = 0.02;
@@ -79,6 +81,9 @@ void main() {
   outFlux = vec4(reflected * perpendicular * crossSection, float(lightIndex));
 #if SURFACES
   outAlbedo = vec4(albedo, 1.0);
+#if LOBES
+  outDiffuseFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
+#endif
 #endif
 #if GLOSSY
   outSpecular = materials[materialIndex].specular;

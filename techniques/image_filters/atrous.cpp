@@ -31,7 +31,7 @@ class AtrousPass : public Pass {
       this, "deviation_of", DeviationOf::both,
       "whose standard deviation 'sigma_l' counts; both: of both pixels, by their mean variance; own: of the pixel that is filtered",
       published(DeviationOf::own)};
-  Param<float> sigmaNormal{this, "sigma_n", 128.0f, within(0.0f, 1e4f),
+  Param<float> sigmaNormal{this, "sigma_n", 128.0f, within(1e-3f, 1e4f),
                            "exponent of the cosine between the shading normals"};
   Param<Guide> guide{
       this, "guide", Guide::plane,

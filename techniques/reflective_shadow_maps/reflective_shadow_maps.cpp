@@ -26,7 +26,7 @@ class RenderPass : public LightViewPass {
 
   Param<Lobes> lobes{
       this, "lobes", Lobes::diffuse,
-      "what Phong lobes of the seen surfaces add to the flux of 'map'; diffuse: all that they reflect, as if it left to all sides; directional: the same, and the lobes beside it, by which choose and near_field_voxels.gather turn it in its direction; none: nothing. Where 'surfaces' is read nothing, either, since paths reflect by the lobes themselves",
+      "what Phong lobes of the seen surfaces add to the flux of 'map'; diffuse: all that they reflect, as if it left to all sides; directional: the same, and the lobes beside it, by which choose and near_field_voxels.gather turn it in its direction; none: nothing. 'surfaces' has the flux of 'none', since paths reflect by the lobes themselves",
       published(Lobes::none)};
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};
   Out<ReflectiveShadowMap> surfaces{
@@ -43,15 +43,19 @@ class RenderPass : public LightViewPass {
                                .lightCount = views.lightCount(),
                                .layerCount = views.layerCount()};
     std::vector<gpu::TextureRef> colours{result.position, result.normal, result.flux};
-    const bool glossy = frame.traits().glossy, own = surfaces.wanted();
+    const bool glossy = frame.traits().glossy, own = surfaces.wanted(), turns = lobes == Lobes::directional;
     const render::Variant variant{.surfaces = own,
-                                  .glossy = glossy && (own || lobes == Lobes::directional),
-                                  .lobes = glossy && !own && lobes != Lobes::none};
-    const ReflectiveShadowMap plain = result;
-    if (variant.surfaces) colours.push_back(result.albedo = layers("albedos of what lights see"));
-    if (variant.glossy) colours.push_back(result.specular = layers("Phong lobes of what lights see"));
-    map = own ? plain : result;
-    if (own) surfaces = result;
+                                  .glossy = glossy && (own || turns),
+                                  .lobes = glossy && map.wanted() && lobes != Lobes::none};
+    const auto add = [&](const char* label) { return colours.emplace_back(layers(label)); };
+    // Each output is what it is without the other: the flux of paths is diffuse alone.
+    ReflectiveShadowMap ofPaths = result;
+    if (own) ofPaths.albedo = add("albedos of what lights see");
+    if (variant.glossy) ofPaths.specular = add("Phong lobes of what lights see");
+    if (own && variant.lobes) ofPaths.flux = add("diffusely reflected flux");
+    if (turns) result.specular = ofPaths.specular;
+    map = result;
+    if (own) surfaces = ofPaths;
     if (result.lightCount == 0)
       for (const gpu::TextureRef& texture : colours) texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth =

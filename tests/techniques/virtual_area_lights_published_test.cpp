@@ -392,7 +392,7 @@ TEST_CASE(
       pass gbuffer direct_lighting.gbuffer {{ }}
       pass points virtual_area_lights.points {{ points 64 }}
       pass vertices virtual_area_lights.vertices {{ points points.points }}
-      pass map reflective_shadow_maps.render {{ size 8 }}
+      pass map reflective_shadow_maps.render {{ size 8  lobes none }}
       pass choose reflective_shadow_maps.choose {{ map map.map  lights 64  {} }}
       pass gather virtual_area_lights.gather {{ points points.points  lights choose.lights  {} }}
       pass normalise virtual_area_lights.normalise {{ points points.points  light gather.light  {} }}

@@ -10,6 +10,7 @@
 
 #include "../../techniques/virtual_area_lights/points/surface_points.h"
 #include "lumivox/scene/models.h"
+#include "support/placed.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
@@ -267,7 +268,9 @@ TEST_CASE("points move with what they lie on, and a mirrored surface keeps its f
     REQUIRE(moved.state.radius[i] == rest.state.radius[i]);
   }
   scene.objects[0].motion.reset();
-  scene.objects[0].placement[0][0] = -1.0;
+  glm::dmat4 mirror = scene.objects[0].placement;
+  mirror[0][0] = -1.0;
+  place(scene, scene.objects[0], mirror);
   const Spread mirrored = spread(scene, 300);
   const glm::vec3 middle(snapshotOf(scene, 0.0).origin);
   for (std::size_t i = 0; i < mirrored.size(); ++i)
