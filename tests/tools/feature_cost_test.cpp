@@ -187,7 +187,7 @@ const std::vector<PipelineCosts> kPipelines{
       {"glossy material",
        "pass average cones grid reflect; program average_add toolkit/claim toolkit/number "
        "average_resolve filter reflect; compose GLOSSY=1; gather DIFFUSE=0 ENVIRONMENT=0 FACES=one "
-       "GLOSSY=1 LOBES=0 MEDIUM=none STORE=dense"},
+       "GLOSSY=1 LOBES=0 MEDIUM=none STORE=dense; render LOBES=1"},
       {"moving camera", "again compose gather"},
       {"moving object",
        "again compose gather inject lights propagate voxels; program count_behind; bytes voxels"},
@@ -203,6 +203,7 @@ const std::vector<PipelineCosts> kPipelines{
     {"reflective_shadow_maps",
      {{"cut-out mask", "render MASKS=1"},
       {"emission", "bytes choose lights"},
+      {"glossy material", "bytes lights; choose GLOSSY=1; gather GLOSSY=1; render GLOSSY=1 LOBES=1"},
       {"moving camera", "again compose gather"},
       {"moving object", "again choose compose gather lights"},
       {"spot", "bytes choose lights"},
@@ -211,6 +212,7 @@ const std::vector<PipelineCosts> kPipelines{
     {"near_field_voxels",
      {{"cut-out mask", "conservative MASKS=1; render MASKS=1"},
       {"emission", "bytes lights"},
+      {"glossy material", "render LOBES=1"},
       {"moving camera", "again compose gather smooth"},
       {"moving object",
        "again bits compose gather lights smooth voxels; program bits_copy bits_restore count_behind; "
@@ -267,10 +269,10 @@ const std::vector<PipelineCosts> kPipelines{
      {{"cut-out mask", "render MASKS=1"},
       {"emission", "bytes choose map"},
       {"glossy material",
-       "bytes apply gather normalise occlude; apply GLOSSY=1; compose GLOSSY=1; gather LOBE=glossy; "
-       "normalise LOBE=glossy"},
+       "bytes apply gather map normalise; apply GLOSSY=1; choose GLOSSY=1; compose GLOSSY=1; gather "
+       "LOBE=glossy LOBED=1; normalise LOBE=glossy; render GLOSSY=1 LOBES=1"},
       {"moving camera", "again apply compose"},
-      {"moving object", "again apply choose compose gather map normalise occlude points"},
+      {"moving object", "again apply choose compose gather look map normalise occlude points"},
       {"spot", "bytes choose map"},
       {"sun", "bytes choose map"},
       {"texture", "render TEXTURES=1"}}}};

@@ -17,9 +17,10 @@ VolumeReader* openReader() {
   void* handle = dlopen((libraryFolder() / kLibrary).c_str(), RTLD_NOW | RTLD_LOCAL);
   void* symbol = handle == nullptr ? nullptr : dlsym(handle, kVolumeReaderSymbol);
   if (symbol == nullptr) {
-    throw Error(fmt::format("the reader of volume files cannot be opened: {}; expected {} beside liblumivox, "
-                            "where `ninja lumivox_volume` builds it",
-                            dlerror(), kLibrary));
+    throw Error(
+        fmt::format("the reader of volume files cannot be opened: {}; expected {} beside liblumivox, "
+                    "where `ninja lumivox_volume` builds it",
+                    dlerror(), kLibrary));
   }
   return reinterpret_cast<VolumeReader*>(symbol);
 }
