@@ -39,7 +39,7 @@ vec4 unpackLobe(float word) {
 float packFlux(vec3 flux) {
   float largest = max(flux.x, max(flux.y, flux.z));
   if (!(largest > 0.0)) return 0.0;
-  int exponent = clamp(int(floor(log2(largest))) + 1, -120, 127);
+  int exponent = clamp(int(floor(log2(largest))) + 1, -120, 126);
   if (largest >= exp2(float(exponent))) ++exponent;  // the logarithm of a power of two may be off by one
   uvec3 steps = uvec3(clamp(flux * exp2(float(7 - exponent)) + 0.5, 0.0, 127.0));
   return uintBitsToFloat(kOrdinary | uint(exponent + 128) << 21 | steps.z << 14 | steps.y << 7 | steps.x);

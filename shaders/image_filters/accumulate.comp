@@ -1,6 +1,7 @@
 #version 450
 // Blends a frame's light with its history, and estimates the variance of the result (Schied et al. 2017, Sec. 4.1 and 4.2).
 #include "common/joint_bilateral.glsl"
+#include "luminance.glsl"
 
 layout(constant_id = 0) const int exponential = 0;     // 1: a fixed weight once the history is long enough; 0: the mean of the frames
 layout(constant_id = 1) const int varianceOfSample = 0;  // 1: of one frame; 0: of the accumulated light
@@ -30,7 +31,6 @@ const float kFewFrames = 4.0;    // below which variance comes from the window
 const float kAlike = 2.0;        // largest dissimilarity of a surface in the window
 const float kRounding = 1e-4;    // share of the mean that is no change
 
-float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 bool isFinite(vec3 light) { return !(any(isnan(light)) || any(isinf(light))); }
 
 struct Window {

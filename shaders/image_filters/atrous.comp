@@ -3,6 +3,7 @@
 // Sec. 4.3 and 4.4): 5 x 5 samples that lie `apart` pixels apart.
 #pragma lumivox axis REFLECTS 0 1  // the light is multiplied by the diffuse albedo, last
 #include "common/joint_bilateral.glsl"
+#include "luminance.glsl"
 
 const int kPlane = 0, kDepth = 1;
 layout(constant_id = 0) const int guide = kPlane;
@@ -34,8 +35,6 @@ layout(binding = 0, rgba32f) uniform writeonly image2D filteredLight;
 layout(binding = 1, rgba32f) uniform writeonly image2D filteredVariance;
 
 const float kSpline[3] = float[](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);  // B3
-
-float luminanceOf(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
 // Variance of the light around a pixel: 3 x 3 Gaussian.
 float varianceAround(ivec2 at) {

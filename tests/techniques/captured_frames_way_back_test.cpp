@@ -299,6 +299,9 @@ TEST_CASE("errors of the way back", "[.]") {
     const Change change = changeOf(scene, picture, finalOf(shown, picture, oneWay(), shared),
                                    finalOf(shown, picture, bothWays(), all));
     table.row(name, {change.error, change.ratio});
+    CAPTURE(name, change.ratio);
+    CHECK(change.error <= 0.8);
+    CHECK((change.ratio > 0.5 && change.ratio < 1.2));
   };
   row("one picture", scene, {});
   row("one picture, exact", clean, {});

@@ -115,9 +115,14 @@ TEST_CASE("errors of imperfect volumes by voxels, rays and reading", "[.]") {
       const Found found = claim.found(row.made, row.settings);
       table.row(fmt::format("{}, {}", name, row.what),
                 {found.light.rmse, found.light.ratio, found.occlusion.rmse, found.occlusion.ratio});
+      CAPTURE(name, row.what, found.light.ratio);
+      CHECK(found.light.rmse < 0.65);
+      CHECK((found.light.ratio > 0.55 && found.light.ratio < 1.1));
+      CHECK((found.occlusion.ratio > 0.4 && found.occlusion.ratio < 1.05));
     }
     const Against propagated = claim.lightOf("imperfect_volumes_propagation", {});
     table.row(fmt::format("{}, propagated", name), {propagated.rmse, propagated.ratio, NAN, NAN});
+    CHECK(propagated.rmse < 0.8);
   }
 }
 

@@ -79,6 +79,7 @@ TEST_CASE("errors of light and of occlusion by voxels and rays", "[.]") {
   for (const auto& [name, picture] :
        {std::pair<const char*, Picture>("cornell", {64, 64, 1024}), {"arcade", {80, 45, 1024}}}) {
     const Scene scene = committed(name);
+    double ofFewRays = 0.0;
     for (const Row& row : rows) {
       const std::vector<std::string> settings{std::string("resolution=") + row.resolution,
                                               std::string("rays=") + row.rays};
@@ -87,6 +88,14 @@ TEST_CASE("errors of light and of occlusion by voxels and rays", "[.]") {
       table.row(
           std::string(name) + ", " + row.effect + ", " + row.resolution + " voxels, " + row.rays + " rays",
           {found.rmse, light ? found.ratio : NAN});
+      CAPTURE(name, row.effect, row.resolution, row.rays, found.rmse, found.ratio);
+      CHECK(found.rmse < 1.1);
+      if (!light) continue;
+      CHECK((found.ratio > 0.8 && found.ratio < 1.05));
+      if (row.rays == std::string("64"))
+        ofFewRays = found.rmse;
+      else
+        CHECK(found.rmse < ofFewRays);
     }
   }
 }
