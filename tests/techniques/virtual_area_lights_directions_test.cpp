@@ -156,3 +156,22 @@ TEST_CASE("by direction, 'occlude' passes light unchanged, and 'gather' asks for
   CHECK_THROWS_WITH(SparsePasses().gather(points, lightsOf({DiscLight{}}), kByDirection),
                     Catch::Contains("expected it to be connected to a pass virtual_area_lights.look"));
 }
+
+TEST_CASE("points have the sky of a map that was turned while the picture is shown") {
+  const Pipeline text = pipeline("virtual_area_lights");
+  RenderOptions options = sized(24, 24);
+  options.parameters = text.settings({"points=256"});
+  const Scene scene = committed("open_air");
+  Scene turned = scene;
+  auto map = std::make_shared<EnvironmentMap>(*scene.environmentMap);
+  map->toMap = glm::mat3(0, 0, -1, 0, 1, 0, 1, 0, 0) * map->toMap;
+  map->finish();
+  turned.environmentMap = map;
+  PipelineExecutor shown(device(), techniques(), scene, text, options),
+      fresh(device(), techniques(), turned, text, options);
+  const ImageBuffer before = shown.render(0.0).outputs.at("indirect_diffuse");
+  shown.setScene(turned);
+  const ImageBuffer after = shown.render(0.0).outputs.at("indirect_diffuse");
+  CHECK(after.values() == fresh.render(0.0).outputs.at("indirect_diffuse").values());
+  CHECK(after.values() != before.values());
+}
