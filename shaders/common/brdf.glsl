@@ -23,4 +23,10 @@ float phongAlbedo(float exponent, float cosine) {
   return cosine + grazing * pow(1.0 - min(cosine, 1.0), 0.5 / grazing);
 }
 
+// The same share of light that arrives evenly from all sides: twice the integral of phongAlbedo times the cosine.
+float phongAlbedo(float exponent) {
+  float grazing = phongAlbedo(exponent, 0.0), power = 0.5 / grazing;
+  return 2.0 / 3.0 + 2.0 * grazing / ((power + 1.0) * (power + 2.0));
+}
+
 #endif

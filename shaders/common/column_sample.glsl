@@ -36,7 +36,7 @@ VoxelFragment fragmentOf(MaterialData material) {
   fragment.voxel = fragment.offset = fragment.normal = 0u;
   fragment.albedoRg = packHalves(material.diffuse.rg);
   fragment.albedoBCoverage = packHalves(vec2(material.diffuse.b, 1.0));
-  fragment.emission = packShared(material.emission.rgb);
+  fragment.emission = packEmissionOrLobe(material.emission.rgb, material.specular);
   return fragment;
 }
 

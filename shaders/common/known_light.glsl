@@ -29,13 +29,33 @@ KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 }
 
 #ifdef LUMIVOX_TWO_SIDED_LIGHT
-// Like addArriving, but only for the sides without known light.
-void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front,
-                       inout vec3 back) {
-  vec3 ignored = vec3(0.0);
-  if (!known.known) addArriving(lightCount, posWorld, normal, twoSided, mediumSteps, front, back);
-  else if (known.side == 1) addArriving(lightCount, posWorld, normal, false, mediumSteps, front, ignored);
-  else if (twoSided) addArriving(lightCount, posWorld, -normal, false, mediumSteps, back, ignored);
+#include "common/brdf.glsl"
+
+// Irradiance of the two sides of a surface, W/m^2, and the same times the share that the surface's Phong lobe reflects of it.
+struct SidesLit {
+  vec3 front, back;
+  vec3 frontByLobe, backByLobe;
+};
+const SidesLit kUnlit = SidesLit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+
+// Adds the light of the first lightCount lights, but only to the sides without known light. `exponent`: of the lobe; negative: no lobe.
+void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, float exponent, bool twoSided, int mediumSteps,
+                       inout SidesLit lit) {
+  bool onlyBack = known.known && known.side == 0;
+  if (onlyBack && !twoSided) return;
+  for (int i = 0; i < lightCount; ++i) {
+    bool behind;
+    float cosSurface;
+    vec3 arriving = irradianceFrom(lights[i], posWorld, onlyBack ? -normal : normal, twoSided && !known.known, mediumSteps, behind, cosSurface);
+    vec3 byLobe = exponent >= 0.0 ? arriving * phongAlbedo(exponent, cosSurface) : vec3(0.0);
+    if (behind != onlyBack) {
+      lit.back += arriving;
+      lit.backByLobe += byLobe;
+    } else {
+      lit.front += arriving;
+      lit.frontByLobe += byLobe;
+    }
+  }
 }
 #endif
 

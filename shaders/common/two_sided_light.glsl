@@ -3,16 +3,16 @@
 #ifndef LUMIVOX_TWO_SIDED_LIGHT
 #define LUMIVOX_TWO_SIDED_LIGHT
 
-// Adds the irradiance at a point due to one light, W/m^2: to `front` on the side of the normal; to `back` behind it, only if twoSided.
-// mediumSteps: largest number of steps through a heterogeneous medium towards a light.
-void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
+// Irradiance at a point due to one light, W/m^2, 0 on the back unless twoSided; `behind`: it arrives on the back. `cosSurface`: of the
+// light's direction to the normal of that side. mediumSteps: largest number of steps through a heterogeneous medium towards a light.
+vec3 irradianceFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, out bool behind, out float cosSurface) {
   vec3 toLight;
   vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
-  float cosSurface = dot(normal, toLight);
-  bool behind = cosSurface < 0.0;
-  if (behind && !twoSided) return;
+  cosSurface = dot(normal, toLight);
+  behind = cosSurface < 0.0;
+  if (behind && !twoSided) return vec3(0.0);
   cosSurface = abs(cosSurface);
-  if (!(cosSurface > 0.0)) return;  // also if the light lies at the point: there is no direction to it
+  if (!(cosSurface > 0.0)) return vec3(0.0);  // also if the light lies at the point: there is no direction to it
   vec3 arriving = perpendicular * cosSurface;
 #ifdef SHADOW_VIEWS
   arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
@@ -22,6 +22,14 @@ void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSide
   if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
 #endif
 #endif
+  return arriving;
+}
+
+// Adds that irradiance to `front` on the side of the normal; to `back` behind it.
+void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
+  bool behind;
+  float cosSurface;
+  vec3 arriving = irradianceFrom(light, posWorld, normal, twoSided, mediumSteps, behind, cosSurface);
   if (behind) back += arriving;
   else front += arriving;
 }

@@ -10,7 +10,7 @@ struct VoxelFragment {
   uint normal;    // octahedral, two 16-bit signed normalised numbers; front side
   uint albedoRg;  // two halves
   uint albedoBCoverage;  // halves: blue albedo; covered fraction (alpha mask)
-  uint emission;  // radiance, W/(sr m^2), three mantissas with a shared exponent
+  uint emission;  // radiance, W/(sr m^2), three mantissas with a shared exponent; or the Phong lobe of a surface that does not emit
 };
 
 // A triangle with a sharper corner than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding error.
@@ -73,6 +73,27 @@ vec3 unpackShared(uint word) {
   if (word == 0u) return vec3(0.0);
   float unit = exp2(float(int(word >> 24) - 128 - 8));
   return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * unit;
+}
+
+// What a surface emits or, if it emits nothing, its Phong lobe: the albedo in 8 bits a channel and the exponent in one of 27 steps of
+// log2(exponent + 1), below the exponents of all radiances. Of a surface that does both, the lobe is left out.
+const uint kLobeSteps = 27u;
+const float kLobeStep = 16.0 / 26.0;
+uint packEmissionOrLobe(vec3 emission, vec4 specular) {
+  uint word = packShared(emission);
+  uvec3 albedo = uvec3(clamp(specular.rgb, 0.0, 1.0) * 255.0 + 0.5);
+  uint all = albedo.r | albedo.g << 8 | albedo.b << 16;
+  if (word != 0u || all == 0u) return word;
+  float width = log2(max(specular.w, 0.0) + 1.0) / kLobeStep;
+  return all | uint(clamp(width + 1.5, 1.0, float(kLobeSteps))) << 24;
+}
+vec3 emissionOf(VoxelFragment fragment) { return fragment.emission >> 24 > kLobeSteps ? unpackShared(fragment.emission) : vec3(0.0); }
+// rgb: Phong albedo, 0 where there is no lobe; w: exponent.
+vec4 lobeOf(VoxelFragment fragment) {
+  uint step = fragment.emission >> 24;
+  if (step == 0u || step > kLobeSteps) return vec4(0.0);
+  vec3 albedo = vec3(fragment.emission & 255u, fragment.emission >> 8 & 255u, fragment.emission >> 16 & 255u) / 255.0;
+  return vec4(albedo, exp2(float(step - 1u) * kLobeStep) - 1.0);
 }
 
 // The direct light that the fragment reflects is not known: the reader lights the fragment itself (VoxelFragments::kNotKnown).

@@ -1,7 +1,8 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.1: the direct light that each fragment reflects diffusely, on both sides; and the largest radiance in
 // each voxel, the unit of inject_add.comp, so that a dark voxel beside a very bright one keeps its light. Sec. 3.2: if the image has the
-// light of a visible side, that light is used (REFLECTED), and the lights illuminate only the other side.
+// light of a visible side, that light is used (REFLECTED), and the lights illuminate only the other side. Deviates: what a Phong lobe
+// reflects is added, as if it left to all sides; the paper's surfaces are diffuse.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox require LIGHTS || REFLECTED
 layout(local_size_x = 64) in;
@@ -19,6 +20,7 @@ layout(std140, binding = 0) uniform Lighting {
   float voxelSize;     // m
   int lightCount;
   float mostRadiance;  // W/(sr m^2): limit of the radiance of a voxel of this size, however near a light is
+  int glossy;          // 1: what Phong lobes reflect leaves to all sides like diffuse light
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): front, back, three channels each
 layout(std430, binding = 3) buffer Brightest { uint brightest[]; };  // bits of a non-negative float, which order like the float
@@ -29,14 +31,22 @@ void main() {
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
-  vec3 front = vec3(0.0), back = vec3(0.0);
+  vec4 lobe = vec4(0.0);
+  vec3 front = vec3(0.0), back = front, frontByLobe = front, backByLobe = front;
   KnownLight known = knownLightOf(index, fragment, true);
 #if LIGHTS
-  addArrivingBeside(known, lightCount, posWorld, unpackNormal(fragment.normal), true, 0, front, back);
+  if (glossy != 0) lobe = lobeOf(fragment);
+  float exponent = any(greaterThan(lobe.rgb, vec3(0.0))) ? lobe.w : -1.0;
+  SidesLit lit = kUnlit;
+  addArrivingBeside(known, lightCount, posWorld, unpackNormal(fragment.normal), exponent, true, 0, lit);
+  front = lit.front;
+  back = lit.back;
+  frontByLobe = lit.frontByLobe;
+  backByLobe = lit.backByLobe;
 #endif
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x), 0.0, 1.0);
-  vec3 sides[2] = vec3[2](albedo / kPi * front + (known.side == 0 ? known.radiance : vec3(0.0)),
-                          albedo / kPi * back + (known.side == 0 ? vec3(0.0) : known.radiance));
+  vec3 sides[2] = vec3[2](albedo / kPi * front + lobe.rgb / kPi * frontByLobe + (known.side == 0 ? known.radiance : vec3(0.0)),
+                          albedo / kPi * back + lobe.rgb / kPi * backByLobe + (known.side == 0 ? vec3(0.0) : known.radiance));
   float most = 0.0;
   for (int side = 0; side < 2; ++side)
     for (int channel = 0; channel < 3; ++channel) {

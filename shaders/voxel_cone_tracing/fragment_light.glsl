@@ -6,7 +6,7 @@
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require (!SHADOWS || LIGHTS) && (!LIGHTS || SHADOWS)
 #pragma lumivox require MEDIUM == none || LIGHTS
-#include "common/constants.glsl"
+#include "common/brdf.glsl"
 #include "bricks.glsl"
 #if SHADOWS
 #define SHADOW_VIEWS
@@ -34,6 +34,7 @@ layout(std140, binding = 0) uniform Grid {
   float ambient;        // irradiance of all surfaces in addition to the lights, W/m^2
   int lightSamples;     // number of points of a fragment's plane inside its voxel that are lit
   int emissive;         // 1: emission of surfaces is stored in the voxels as well
+  int glossy;           // 1: what Phong lobes reflect is sent to all sides like diffuse light
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // r, g, b per fragment or per side of one, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
@@ -54,51 +55,44 @@ float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
 #endif
 
 // What the front of a fragment emits, W/(sr m^2).
-vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
+vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? emissionOf(fragment) : vec3(0.0); }
 
+// Irradiance by the lights of the sides without known light; 0 of the other sides. It is taken at the fragment's point, or as the mean
+// over points of the fragment's plane inside its voxel, so that a shadow edge through the voxel is averaged. These points are evenly
+// distributed over the side of the voxel that the plane faces (R2: Roberts 2018). `exponent`: of the surface's lobe; negative: none.
 #if LIGHTS
-void lightPoint(KnownLight known, vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
-  addArrivingBeside(known, lightCount, posWorld, normal, twoSided != 0, mediumSteps, front, back);
-}
-#endif
-
-// Irradiance by the lights, W/m^2, of the sides without known light; 0 for the other sides. It is taken at the fragment's point, or as the
-// mean over points of the fragment's plane inside its voxel, so that a shadow edge through the voxel is averaged. These points are evenly
-// distributed over the side of the voxel that the plane faces (R2: Roberts 2018).
-void arrivingAt(VoxelFragment fragment, KnownLight known, out vec3 front, out vec3 back) {
-  front = vec3(0.0);
-  back = vec3(0.0);
-#if LIGHTS
+SidesLit litAt(VoxelFragment fragment, KnownLight known, float exponent) {
+  SidesLit lit = kUnlit;
   vec4 voxel = voxelOfFragment(fragment);
   vec3 place = unpackOffset(fragment.offset);
   vec3 normal = unpackNormal(fragment.normal);
-  if (lightSamples <= 1) {
-    lightPoint(known, voxel.xyz + place * voxel.w, normal, front, back);
-    return;
-  }
   const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
   vec3 along = abs(normal);
   int axis = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
   int side = (axis + 1) % 3, up = (axis + 2) % 3;
   float inside = 0.0;
-  for (int i = 0; i < lightSamples; ++i) {
-    vec2 across = fract(0.5 + float(i) * kR2);
+  // The last turn takes the fragment's own point, if no point of the plane lies in the voxel.
+  for (int i = lightSamples <= 1 ? lightSamples : 0; i <= lightSamples; ++i) {
     vec3 point = place;
-    point[side] = across.x;
-    point[up] = across.y;
-    point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
-    if (point[axis] < 0.0 || point[axis] > 1.0) continue;
+    if (i < lightSamples) {
+      vec2 across = fract(0.5 + float(i) * kR2);
+      point[side] = across.x;
+      point[up] = across.y;
+      point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
+      if (point[axis] < 0.0 || point[axis] > 1.0) continue;
+    } else if (inside > 0.0) {
+      continue;
+    }
     inside += 1.0;
-    lightPoint(known, voxel.xyz + point * voxel.w, normal, front, back);
+    addArrivingBeside(known, lightCount, voxel.xyz + point * voxel.w, normal, exponent, twoSided != 0, mediumSteps, lit);
   }
-  if (inside > 0.0) {
-    front /= inside;
-    back /= inside;
-  } else {
-    lightPoint(known, voxel.xyz + place * voxel.w, normal, front, back);
-  }
-#endif
+  lit.front /= inside;
+  lit.back /= inside;
+  lit.frontByLobe /= inside;
+  lit.backByLobe /= inside;
+  return lit;
 }
+#endif
 
 vec3 albedoOf(VoxelFragment fragment) {
   return vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);

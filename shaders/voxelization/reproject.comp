@@ -4,6 +4,7 @@
 // With REFLECTED, the fragment also gets the direct light that the renderer computed at the point, and which of its sides reflects it.
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis REFLECTED 0 1
+#pragma lumivox axis GLOSSY 0 1
 #include "fragment_list.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,6 +18,9 @@ layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gDiffuse;
 #if EMISSION
 layout(binding = 3) uniform sampler2D gEmission;
+#endif
+#if GLOSSY
+layout(binding = 5) uniform sampler2D gSpecular;
 #endif
 
 void main() {
@@ -46,7 +50,11 @@ void main() {
   fragment.normal = packNormal(facing.w > 0.5 ? facing.xyz : -facing.xyz);
   fragment.albedoRg = packHalves(albedo.rg);
   fragment.albedoBCoverage = packHalves(vec2(albedo.b, 1.0));
-  fragment.emission = packShared(radiance);
+  vec4 specular = vec4(0.0);
+#if GLOSSY
+  specular = texelFetch(gSpecular, pixel, 0);
+#endif
+  fragment.emission = packEmissionOrLobe(radiance, specular);
   fragments[index] = fragment;
 #if REFLECTED
   // The reader of the fragment adds its emission.

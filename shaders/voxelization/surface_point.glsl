@@ -34,6 +34,6 @@ void appendPoint(int triangle, vec3 corners[3], vec3 weights) {
   fragment.normal = packNormal(normal);
   fragment.albedoRg = packHalves(albedo.rg);
   fragment.albedoBCoverage = packHalves(vec2(albedo.b, painted.coverage));
-  fragment.emission = packShared(material.emission.rgb);
+  fragment.emission = packEmissionOrLobe(material.emission.rgb, material.specular);
   fragments[index] = fragment;
 }

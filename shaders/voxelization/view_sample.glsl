@@ -26,6 +26,6 @@ VoxelFragment sampleView() {
   fragment.normal = packNormal(dot(normalWorld, normalWorld) > 0.0 ? normalize(normalWorld) : vec3(0.0, 1.0, 0.0));
   fragment.albedoRg = packHalves(albedo.rg);
   fragment.albedoBCoverage = packHalves(vec2(albedo.b, coverage));
-  fragment.emission = packShared(material.emission.rgb);
+  fragment.emission = packEmissionOrLobe(material.emission.rgb, material.specular);
   return fragment;
 }

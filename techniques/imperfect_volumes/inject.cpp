@@ -15,6 +15,7 @@ constexpr float kLargestHalf = 32768.0f, kLargestCoefficient = 4.0f;
 class InjectPass : public Pass {
   enum class Lobe { hemisphere, cosine };
   enum class Precision { float_, half };
+  enum class Lobes { diffuse, none };
 
   In<VoxelFragments> fragments{this, "fragments", "surface samples: the imperfect volume"};
   In<ShadowMap> shadow{
@@ -23,6 +24,10 @@ class InjectPass : public Pass {
   Param<Lobe> lobe{
       this, "lobe", Lobe::hemisphere,
       "radiance of the lit side of a surface; hemisphere: the same over its half space, as of a Lambert surface; cosine: a clamped cosine of the same flux. The paper does not say which"};
+  Param<Lobes> lobes{
+      this, "lobes", Lobes::diffuse,
+      "what Phong lobes reflect of the lights; diffuse: all of it, as if it left to all sides; none: nothing, since the paper's surfaces are diffuse",
+      published(Lobes::none)};
   Param<Precision> precision{this, "precision", Precision::float_,
                              "numbers in the volume; float: 48 bytes a voxel; half: 24"};
   Out<ShGrid> reflected{this, "reflected", Contributes::nothing, Needs::anyLight,
@@ -63,7 +68,8 @@ class InjectPass : public Pass {
                     {inject_light::lighting({.gridLow = grid.low,
                                              .voxelSize = grid.voxelSize,
                                              .lightCount = lights.count,
-                                             .mostRadiance = most}),
+                                             .mostRadiance = most,
+                                             .glossy = lobes == Lobes::diffuse && frame.traits().glossy}),
                      inject_light::radiances(radiances), inject_light::brightest(brightest),
                      SlotBinding(slots), inject_light::reflected(fragments->reflected), lights},
                     *fragments);

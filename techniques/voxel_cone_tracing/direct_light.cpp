@@ -24,7 +24,14 @@ DirectLight::DirectLight(Pass* pass)
                "light on the back of a triangle counts; off, as published: only on the front"),
       emission(
           pass, "emission", false,
-          "voxels store emitted light too, for passes that show the voxels themselves, as 'lens' does; cones of 'gather' would take direct light of lamps for indirect light") {
+          "voxels store emitted light too, for passes that show the voxels themselves, as 'lens' does; cones of 'gather' would take direct light of lamps for indirect light"),
+      lobes(
+          pass, "lobes", Lobes::diffuse,
+          "what Phong lobes reflect is stored in the voxels; diffuse: all of it, as if it left to all sides; none: nothing, since the paper's fragments are diffuse",
+          published(Lobes::none)) {}
+
+bool DirectLight::glossy(PassContext& frame) const {
+  return lobes == Lobes::diffuse && frame.traits().glossy;
 }
 
 float DirectLight::brightest(PassContext& frame, float nearest) const {
@@ -55,7 +62,8 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .brickCount = sums.brickCount,
                      .ambient = ambient,
                      .lightSamples = samples,
-                     .emissive = emission}),
+                     .emissive = emission,
+                     .glossy = glossy(frame)}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
       fragments, sums);
 }

@@ -12,6 +12,9 @@ namespace lumivox::voxel_cone_tracing {
 /// of its brightest radiance over this.
 inline constexpr float kLargestHalf = 32768.0f;
 
+/// What Phong lobes of surfaces add to what voxels send on.
+enum class Lobes { diffuse, none };
+
 /// Lights and their visibility; members of a pass.
 struct DirectLight {
   explicit DirectLight(Pass* pass);
@@ -23,9 +26,13 @@ struct DirectLight {
   Param<int> samples;
   Param<bool> twoSided;
   Param<bool> emission;
+  Param<Lobes> lobes;
 
   /// The most that a voxel at least this far from lights can reflect, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;
+
+  /// Whether fragments also reflect by Phong lobes.
+  bool glossy(PassContext& frame) const;
 
   /// Writes the radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and for each
   /// voxel the number and the brightest of its fragments. A clipmap has a bound per level.

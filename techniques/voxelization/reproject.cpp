@@ -35,7 +35,8 @@ class ReprojectPass : public GridPass {
           frame.elements(reproject::reflected, list.capacity, "direct light that fragments reflect");
       list.reflected->clear(VoxelFragments::kNotKnown);
     }
-    const reproject::Variant variant{gbuffer->emission != nullptr, direct.present()};
+    const reproject::Variant variant{gbuffer->emission != nullptr, direct.present(),
+                                     gbuffer->specular != nullptr};
     frame.dispatch(frame.program(variant),
                    {appending(list), GBufferBinding(*gbuffer), reproject::reflected(list.reflected),
                     reproject::direct(textureOf(direct), gpu::Sampling::nearest)},

@@ -18,6 +18,7 @@ namespace lumivox::test {
 /// Mirror of VoxelFragment in shaders/common/voxel.glsl.
 struct FragmentData {
   std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage, emission;
+  static constexpr std::uint32_t kLobeSteps = 27;
   auto operator<=>(const FragmentData&) const = default;
 
   static glm::ivec3 tenBits(std::uint32_t packed) {
@@ -42,7 +43,7 @@ struct FragmentData {
     return glm::normalize(n);
   }
   glm::vec3 emittedRadiance() const {
-    if (emission == 0) return glm::vec3(0.0f);
+    if (emission >> 24 <= kLobeSteps) return glm::vec3(0.0f);
     const float unit = std::ldexp(1.0f, static_cast<int>(emission >> 24) - 128 - 8);
     return glm::vec3(emission & 255, emission >> 8 & 255, emission >> 16 & 255) * unit;
   }

@@ -4,6 +4,7 @@
 #include "lumivox/toolkit/light_samples.h"
 #include "support/imperfect_volumes.h"
 #include "support/made_fragments.h"
+#include "support/phong_lobes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -69,6 +70,23 @@ TEST_CASE("a lit surface sends albedo E cos / pi from its lit side and none from
     CHECK(sent(light, {2, 2, 2}, lit) - sent(light, {2, 2, 2}, -lit) == Approx(radiance).epsilon(0.005));
     for (const float value : light.levels[0].coefficients[0]->downloadFloats(0)) CHECK(std::isfinite(value));
     CHECK(coefficientsIn(light, {3, 2, 2}) == glm::dvec4(0.0));
+  }
+}
+
+TEST_CASE("a glossy surface in the volume also sends what its lobe reflects, unless lobes are left out") {
+  // A fragment's word: three bytes of the Phong albedo, below the step of the exponent, here 2^(16 / 26 k)
+  // - 1.
+  constexpr std::uint32_t kSpecular = 128, kStep = 8;
+  const double exponent = std::exp2((kStep - 1.0) * 16.0 / 26.0) - 1.0, specular = kSpecular / 255.0;
+  for (const double cosine : {1.0, 0.5}) {
+    Scene scene = sunAlong({{std::sqrt(1.0 - cosine * cosine), 0.0, -cosine}});
+    scene.materials.front().specular = glm::vec3(0.5f);
+    FragmentData square = squareAt({1.25, 1.25, 1.25}, {0, 0, 1});
+    square.emission = kSpecular | kSpecular << 8 | kSpecular << 16 | kStep << 24;
+    const double share = reflectedShare(exponent, cosine);
+    for (const bool lobes : {true, false})
+      CHECK(sent(injected(scene, {square}, {{"lobes", lobes ? "diffuse" : "none"}}), {2, 2, 2}, {0, 0, 1}) ==
+            Approx((0.5 + (lobes ? specular * share : 0.0)) * cosine / kPi).epsilon(0.01));
   }
 }
 

@@ -5,6 +5,7 @@
 #include "support/against_reference.h"
 #include "support/glsl_functions.h"
 #include "support/kept_table.h"
+#include "support/phong_lobes.h"
 #include "support/reflective_shadow_maps.h"
 
 using namespace lumivox;
@@ -14,22 +15,6 @@ namespace {
 
 const std::vector<std::string> kLobes{"common/constants.glsl", "common/brdf.glsl", "common/rsm.glsl",
                                       "common/surface_lobe.glsl"};
-
-/// Share of light that a Phong lobe of albedo 1 reflects, by quadrature over the hemisphere about its mirror
-/// direction, which is tilted by the angle of incidence.
-double reflectedShare(double exponent, double cosine) {
-  constexpr int kRings = 1000, kTurns = 400;
-  const double sine = std::sqrt(1.0 - cosine * cosine);
-  double sum = 0.0;
-  for (int i = 0; i < kRings; ++i) {
-    // Uniform in cos^(n + 1) of the angle, which makes all rings weigh the same.
-    const double along = std::pow((i + 0.5) / kRings, 1.0 / (exponent + 1.0)),
-                 across = std::sqrt(1.0 - along * along);
-    for (int k = 0; k < kTurns; ++k)
-      sum += std::max(0.0, cosine * along + sine * across * std::cos(2.0 * kPi * (k + 0.5) / kTurns));
-  }
-  return (exponent + 2.0) / (exponent + 1.0) * sum / (kRings * kTurns);
-}
 
 /// A floor of 2 m x 2 m under a sun that shines at 45 degrees.
 SceneBuilder floorUnderSun(const glm::vec3& specular, float exponent) {
@@ -196,15 +181,6 @@ TEST_CASE(
 
 TEST_CASE("table: errors of light that glossy surfaces send on, by what maps keep of their lobes", "[.]") {
   // The last two scenes are committed ones on which nothing was tuned, here with every surface polished.
-  const auto polished = [](const std::string& name) {
-    Scene scene = committed(name);
-    for (Material& material : scene.materials) {
-      material.diffuse *= 0.6f;
-      material.specular = glm::vec3(0.35f);
-      material.exponent = 30.0f;
-    }
-    return scene;
-  };
   const std::vector<std::pair<std::string, Scene>> scenes{
       {"cornell_glossy", committed("cornell_glossy")},
       {"arcade", committed("arcade")},

@@ -5,6 +5,7 @@
 #include "support/cones.h"
 #include "support/kept_table.h"
 #include "support/marching.h"
+#include "support/phong_lobes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -16,9 +17,9 @@ namespace {
 /// surface reflects 1 W/(sr m^2) x albedo of light that is there from the beginning, after so many bounces.
 enum class Faces { one, coarse, six };
 
-double seenInBox(float albedo, int resolution, int bounces, Faces faces = Faces::six) {
+double seenInBox(const Material& material, int resolution, int bounces, Faces faces = Faces::six) {
   SceneBuilder builder;
-  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(albedo), true);
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.material(material), true);
   InjectSettings settings;
   settings.lights = false;
   settings.ambient = kPi;
@@ -41,6 +42,12 @@ double seenInBox(float albedo, int resolution, int bounces, Faces faces = Faces:
   return faces == Faces::one ? seenIn(filtered(grid)) : seenIn(filteredDirections(grid));
 }
 
+double seenInBox(float albedo, int resolution, int bounces, Faces faces = Faces::six) {
+  Material material;
+  material.diffuse = glm::vec3(albedo);
+  return seenInBox(material, resolution, bounces, faces);
+}
+
 /// albedo + albedo^2 + ... of so many terms.
 double series(double albedo, int terms) {
   return albedo * (1.0 - std::pow(albedo, terms)) / (1.0 - albedo);
@@ -57,6 +64,24 @@ TEST_CASE("in a closed box of albedo a the bounces add up to 1 + a + a^2 + ..., 
       CHECK(seen == Approx(expected).epsilon(bounces > 4 ? 0.06 : 0.03));
       if (albedo == 0.5f && bounces == 12) CHECK(seen == Approx(albedo / (1.0 - albedo)).epsilon(0.05));
     }
+}
+
+TEST_CASE("in a closed box whose walls also have lobes, bounces add up by the mean share of both") {
+  // Light arrives evenly from all sides: a lobe reflects the mean of its share over them, weighed by cosines.
+  Material glossy;
+  glossy.diffuse = glm::vec3(0.3f);
+  glossy.specular = glm::vec3(0.4f);
+  for (const float exponent : {2.0f, 30.0f}) {
+    glossy.exponent = exponent;
+    double share = 0.0;
+    constexpr int kSteps = 40;
+    for (int i = 0; i < kSteps; ++i)
+      share += reflectedShare(static_cast<double>(exponent), std::sqrt((i + 0.5) / kSteps)) / kSteps;
+    for (const int bounces : {1, 4}) {
+      CAPTURE(exponent, share, bounces);
+      CHECK(seenInBox(glossy, 32, bounces) == Approx(series(0.3 + 0.4 * share, bounces)).epsilon(0.03));
+    }
+  }
 }
 
 // Minutes on a software rasteriser.

@@ -92,3 +92,34 @@ TEST_CASE("halves are packed to the nearest, of two alike to the even one, down 
     if (found[i] != glm::vec4(expected[i], expected[i])) ++wrong;
   CHECK(wrong == 0);
 }
+
+TEST_CASE("a fragment keeps what it emits, or the lobe of a surface that emits nothing, in one word") {
+  const auto kept = [](const glm::vec4& lobe, const glm::vec3& emitted, bool asLobe) {
+    return evaluated(kFiles,
+                     fmt::format(R"(
+      VoxelFragment fragment;
+      fragment.emission = packEmissionOrLobe(vec3({:.9e}, {:.9e}, {:.9e}), given);
+      found = {};)",
+                                 emitted.x, emitted.y, emitted.z,
+                                 asLobe ? "lobeOf(fragment)" : "vec4(emissionOf(fragment), 0.0)"),
+                     {lobe})
+        .front();
+  };
+  const glm::vec3 dark(0.0f);
+  for (const float exponent : {0.0f, 1.0f, 7.0f, 40.0f, 1000.0f, 60000.0f}) {
+    const glm::vec4 lobe(0.65f, 0.04f, 1.0f, exponent);
+    const glm::vec4 found = kept(lobe, dark, true);
+    CAPTURE(exponent, found.w);
+    CHECK(glm::distance(glm::vec3(found), glm::vec3(lobe)) < 0.004f);
+    CHECK(std::abs(std::log2((found.w + 1.0f) / (exponent + 1.0f))) < 0.31f);
+    CHECK(kept(lobe, dark, false) == glm::vec4(0.0f));
+  }
+  // The dimmest radiance that is kept lies above all lobes.
+  for (const float radiance : {1e-30f, 0.5f, 3e30f}) {
+    const glm::vec3 emitted(radiance, 0.5f * radiance, 0.0f);
+    CHECK(kept(glm::vec4(0.5f, 0.5f, 0.5f, 10.0f), emitted, true) == glm::vec4(0.0f));
+    const glm::vec3 found(kept(glm::vec4(0.5f), emitted, false));
+    CHECK(glm::distance(found / radiance, emitted / radiance) < 0.01f);
+  }
+  CHECK(kept(glm::vec4(0.0f, 0.0f, 0.0f, 40.0f), dark, true) == glm::vec4(0.0f));
+}

@@ -10,6 +10,7 @@
 layout(local_size_x = 64) in;
 #include "store.glsl"
 #include "common/cone_march.glsl"
+#include "common/brdf.glsl"
 #include "common/fragments.glsl"
 #include "../bricks.glsl"
 
@@ -20,6 +21,7 @@ layout(std140, binding = 0) uniform Parameters {
   int coneCount;
   float mostRadiance;  // W/(sr m^2): limit of the radiance of a voxel
   int twoSided;        // 1: light on the back side counts as well
+  int glossy;          // 1: Phong lobes reflect to all sides like diffuse light
 };
 layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // r, g, b per fragment or per side of a fragment, W/(sr m^2)
 layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };
@@ -51,6 +53,8 @@ void main() {
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
+  vec4 lobe = glossy != 0 ? lobeOf(fragment) : vec4(0.0);
+  if (any(greaterThan(lobe.rgb, vec3(0.0)))) albedo += lobe.rgb * phongAlbedo(lobe.w);
   vec2 place = unitInterval(hash4(uvec4(fragment.voxel, fragment.offset, fragment.normal, 0u)).xy);
   vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));  // front, back
   // One call for both sides: the march is inlined at every call.

@@ -1,6 +1,7 @@
 #version 450
-// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: the light that each fragment reflects diffusely. For each voxel, it
-// counts the fragments and finds the largest radiance, which add.comp needs for the average.
+// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: the light that each fragment reflects. For each voxel, it counts the
+// fragments and finds the largest radiance, which add.comp needs for the average. Deviates: what a Phong lobe reflects is added, as if it
+// left to all sides; the papers' fragments are diffuse.
 //
 // DIRECTIONS: both sides separately, the side of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
@@ -24,15 +25,25 @@ void main() {
   if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   vec3 albedo = albedoOf(fragment);
-  vec3 front, back, emitted = emittedBy(fragment);
+  vec4 lobe = glossy != 0 ? lobeOf(fragment) : vec4(0.0);
+  bool hasLobe = any(greaterThan(lobe.rgb, vec3(0.0)));
+  vec3 front = vec3(0.0), back = front, emitted = emittedBy(fragment);
+  vec3 frontByLobe = vec3(0.0), backByLobe = frontByLobe;
+  float ambientByLobe = hasLobe ? ambient * phongAlbedo(lobe.w) : 0.0;
   KnownLight known = knownLightOf(index, fragment, twoSided != 0);
-  arrivingAt(fragment, known, front, back);
+#if LIGHTS
+  SidesLit lit = litAt(fragment, known, hasLobe ? lobe.w : -1.0);
+  front = lit.front;
+  back = lit.back;
+  frontByLobe = lit.frontByLobe;
+  backByLobe = lit.backByLobe;
+#endif
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
   float most = mostRadianceIn(voxel);
 #if DIRECTIONS
-  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + emitted + (known.side == 0 ? known.radiance : vec3(0.0)),
-                          albedo / kPi * (ambient + back) + (known.side == 0 ? vec3(0.0) : known.radiance));
+  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + lobe.rgb / kPi * (ambientByLobe + frontByLobe) + emitted + (known.side == 0 ? known.radiance : vec3(0.0)),
+                          albedo / kPi * (ambient + back) + lobe.rgb / kPi * (ambientByLobe + backByLobe) + (known.side == 0 ? vec3(0.0) : known.radiance));
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
     vec3 radiance = min(sides[side], most);
@@ -42,7 +53,8 @@ void main() {
   atomicAdd(directions[place].fragments, 1u);
   atomicMax(directions[place].brightest, floatBitsToUint(brightest));
 #else
-  vec3 radiance = min(albedo / kPi * (ambient + front + back), most);  // ambient: thesis Fig. 66
+  vec3 radiance = albedo / kPi * (ambient + front + back);  // ambient: thesis Fig. 66
+  radiance = min(radiance + lobe.rgb / kPi * (ambientByLobe + frontByLobe + backByLobe), most);
   radiance = min(radiance + known.radiance + emitted, most);
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   atomicAdd(sums[place].fragments, 1u);

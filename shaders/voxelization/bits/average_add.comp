@@ -37,7 +37,7 @@ void main() {
 #endif
 #if EMISSION
   float range = uintBitsToFloat(brightest[slot]);
-  vec3 emission = range > 0.0 ? min(unpackShared(fragment.emission) / range, 1.0) : vec3(0.0);
+  vec3 emission = range > 0.0 ? min(emissionOf(fragment) / range, 1.0) : vec3(0.0);
   for (int c = 0; c < 3; ++c) atomicAdd(emissionSums[3u * slot + uint(c)], shareOf(emission[c] * weight));
 #endif
 }

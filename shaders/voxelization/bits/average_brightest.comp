@@ -11,6 +11,6 @@ void main() {
   if (index >= fragmentCount) return;
   uint slot;
   if (!slotOf(unpackVoxel(fragments[index].voxel), slot)) return;
-  vec3 emission = unpackShared(fragments[index].emission);
+  vec3 emission = emissionOf(fragments[index]);
   atomicMax(brightest[slot], floatBitsToUint(max(emission.r, max(emission.g, emission.b))));
 }

@@ -293,7 +293,8 @@ class Injection {
                                          .brickCount = sums.brickCount,
                                          .coneCount = cones,
                                          .mostRadiance = mostRadiance,
-                                         .twoSided = light_.twoSided}),
+                                         .twoSided = light_.twoSided,
+                                         .glossy = light_.glossy(frame)}),
                      bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
                      march.binding(frame, store), bound},
                     *fragments_);
