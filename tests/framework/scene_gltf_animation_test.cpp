@@ -135,6 +135,22 @@ TEST_CASE("bounds for grids hold everything that a model covers while it moves")
   }
 }
 
+TEST_CASE("bounds hold a short leap in an animation of a thousand keys") {
+  GltfWriter writer;
+  const std::string body = triangleBody(writer);
+  std::vector<float> times, values;
+  for (int key = 0; key < 1000; ++key) {
+    times.push_back(0.04f * static_cast<float>(key));
+    values.insert(values.end(), {0.0f, key == 501 ? 7.0f : 0.0f, 0.0f});
+  }
+  const Scene scene =
+      OneModel("m.gltf", writer.gltf(body + ",\"animations\":[" +
+                                     animation(writer, "translation", times, values, "VEC3") + "]"))
+          .load();
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  CHECK(snapshot.gridBounds.high.y + snapshot.origin.y >= 7.0);
+}
+
 TEST_CASE("morph targets move vertices and normals by their weights, which an animation drives") {
   GltfWriter writer;
   const int moved = writer.numbers<float>({0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3");

@@ -164,6 +164,59 @@ TEST_CASE("levels leave the share of the noise that the squares of their joint k
   }
 }
 
+TEST_CASE("a level hands on the variance that the squares of its weights leave, over their sum squared") {
+  // One row of pixels alone, so that the weights of a level do not sum to one: the second level of a ramp
+  // compares lights in deviations that the first one left. The same in double precision.
+  constexpr int kRow = 30;
+  constexpr double kVariance = 0.02;
+  const auto lightAt = [](int x) { return std::sin(0.7 * x) + 0.1 * x; };
+  const GBuffer row = gbufferWhere({kSize, kSize}, [](int x, int y) {
+    SeenSurface seen = facing(x, y);
+    seen.hit = y == kRow;
+    return seen;
+  });
+  std::vector<double> light(kSize), variance(kSize, kVariance);
+  for (int x = 0; x < kSize; ++x) light[static_cast<std::size_t>(x)] = lightAt(x);
+  const double spline[] = {3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0};
+  for (const int apart : {1, 2}) {
+    std::vector<double> nextLight(kSize), nextVariance(kSize);
+    const auto around = [&](int x) {
+      double sum = 0.0, weights = 0.0;
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, kSize - 1); ++i) {
+        const double weight = i == x ? 1.0 : 0.5;
+        sum += weight * variance[static_cast<std::size_t>(i)];
+        weights += weight;
+      }
+      return sum / weights;
+    };
+    for (int x = 0; x < kSize; ++x) {
+      const auto at = static_cast<std::size_t>(x);
+      double weights = 0.0;
+      for (int k = -2; k <= 2; ++k) {
+        const int other = x + apart * k;
+        if (other < 0 || other >= kSize) continue;
+        const auto there = static_cast<std::size_t>(other);
+        double weight = spline[0] * spline[std::abs(k)];
+        if (k != 0)
+          weight *= std::exp(-std::abs(light[there] - light[at]) /
+                             (4.0 * std::sqrt(0.5 * (around(x) + variance[there]))));
+        nextLight[at] += weight * light[there];
+        nextVariance[at] += weight * weight * variance[there];
+        weights += weight;
+      }
+      nextLight[at] /= weights;
+      nextVariance[at] /= weights * weights;
+    }
+    light = nextLight;
+    variance = nextVariance;
+  }
+  const ImageBuffer image =
+      filtered(row, imageWhere([&](int x, int) { return static_cast<float>(lightAt(x)); }),
+               imageWhere([](int, int) { return static_cast<float>(kVariance); }), {{"levels", 2}});
+  for (int x = 0; x < kSize; ++x)
+    REQUIRE(image.at(x, kRow, 0) == Approx(light[static_cast<std::size_t>(x)]).margin(2e-3));
+}
+
 TEST_CASE("a variance that rounding made negative counts as zero and leaves finite light") {
   const Image step = imageWhere([](int x, int) { return x < kSize / 2 ? 1.0f : 0.0f; });
   for (const Settings& form : kForms) {

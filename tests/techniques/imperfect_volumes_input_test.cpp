@@ -47,7 +47,7 @@ TEST_CASE(
                        "  pass coarse voxelization.points {\n    resolution 16\n    adaptive on\n  }\n"
                        "  pass inject imperfect_volumes.inject {\n    fragments coarse.fragments\n"),
              Tells("march", "reflected", "16 x", "opacity", "32 x"));
-  std::string text = changed("imperfect_volumes", inject + "    shadow shadow.depth\n  }\n",
+  std::string text = changed("imperfect_volumes", inject + "    shadow shadow.depth\n    lobes $lobes\n  }\n",
                              "  pass inject light_propagation_volumes.inject_voxels {\n"
                              "    fragments voxels.fragments\n    shadow shadow.depth\n    levels 1\n  }\n");
   const std::string reads = "inject.reflected";

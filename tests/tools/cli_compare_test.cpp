@@ -67,6 +67,19 @@ TEST_CASE("NaN and infinite pixels are counted and do not spread into the number
   CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
 }
 
+TEST_CASE("an image that is almost all NaN passes no limit, and compare says how many pixels it left out") {
+  const Workplace place;
+  writeConstant(place.path() / "b.exr", 0.5f, 0.5f);
+  LayeredImage image;
+  image.layers["direct"] = ImageBuffer(8, 8, 3, std::numeric_limits<float>::quiet_NaN());
+  for (int c = 0; c < 3; ++c) image.layers["direct"].at(0, 0, c) = 0.5f;
+  writeExr(place.path() / "a.exr", image);
+  const CommandResult result =
+      typed("compare", place.file("a.exr"), place.file("b.exr"), "--rmse-at-most", "0.1");
+  CHECK(result.exitCode == 1);
+  CHECK(contains(result.errors, "63 of 64 pixels"));
+}
+
 TEST_CASE("the variance layers of the reference become the uncertainties") {
   const Workplace place;
   writeConstant(place.path() / "a.exr", 1.0f, 0.5f);

@@ -178,7 +178,12 @@ int compareFiles(const CompareCommand& command) {
                                        layerDisplay.exposure);
     const ImageError& error = compared.mean;
     if (!command.sheet.empty()) addPanels(sheet, pair, left, right, compared.flipMap, layerDisplay);
-    if (command.rmseAtMost >= 0.0 && !(error.rmse.value <= command.rmseAtMost)) good = false;
+    // Pixels that are left out of all numbers would pass any limit.
+    if (error.nonFiniteImage > 0)
+      logWarning("{}: {} of {} pixels of layer '{}' are NaN or infinite; the numbers leave them out",
+                 command.image.string(), error.nonFiniteImage, left.pixelCount(), shown(pair.first));
+    if (command.rmseAtMost >= 0.0 && (error.nonFiniteImage > 0 || !(error.rmse.value <= command.rmseAtMost)))
+      good = false;
     list.push_back(toJson(pair, error));
     rows.push_back(
         {pair.first == pair.second ? shown(pair.first) : shown(pair.first) + " = " + shown(pair.second),
@@ -218,7 +223,9 @@ void addCompareCommand(Commands& commands) {
       *command, "--layer", options->layers,
       "this layer of both, or A=B: A of the first with B of the second; 'main' is the layer without a name "
       "(default: all that both have)");
-  command->add_option("--rmse-at-most", options->rmseAtMost, "exit code 1 when an RMSE is larger")
+  command
+      ->add_option("--rmse-at-most", options->rmseAtMost,
+                   "exit code 1 when an RMSE is larger, or the image holds NaN or Inf")
       ->check(numberBetween(0.0, kLargestError));
   options->display.addTo(*command);
   command->add_option("--sheet", options->sheet,

@@ -119,13 +119,16 @@ std::vector<double> AnimatedModel::sampleTimes(std::size_t most) const {
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   constexpr std::size_t kBetween = 8;  // arcs of a turn of 180 degrees miss 2 % of its radius
   std::vector<double> result;
-  if (kBetween * keys.size() > most) {
+  // Every key as long as there is room for it: what moves turns round there.
+  const std::size_t between = std::min(kBetween, most / keys.size());
+  if (between == 0) {
     for (std::size_t i = 0; i + 1 < most; ++i)
       result.push_back(duration * static_cast<double>(i) / static_cast<double>(most - 1));
   } else {
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
-      for (std::size_t k = 0; k < kBetween; ++k)
-        result.push_back(keys[i] + (keys[i + 1] - keys[i]) * static_cast<double>(k) / kBetween);
+      for (std::size_t k = 0; k < between; ++k)
+        result.push_back(keys[i] +
+                         (keys[i + 1] - keys[i]) * static_cast<double>(k) / static_cast<double>(between));
     }
   }
   // The end itself is the start where the animation loops.
@@ -192,8 +195,8 @@ void ModelAnimation::deform(double time, std::vector<glm::vec3>& positions,
 }
 
 std::vector<double> ModelAnimation::sampleTimes() const {
-  constexpr std::size_t kMost = 256;
-  return model_->sampleTimes(kMost);
+  constexpr std::size_t kMost = 4096, kMostOfVertices = 256;  // deforming places every vertex each time
+  return model_->sampleTimes(deforms() ? kMostOfVertices : kMost);
 }
 
 void ModelAnimation::addTo(Hasher& hasher) const {

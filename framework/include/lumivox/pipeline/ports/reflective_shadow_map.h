@@ -13,7 +13,7 @@ struct ReflectiveShadowMap {
   gpu::BufferRef views;
   gpu::TextureRef position;
   gpu::TextureRef normal;
-  gpu::TextureRef flux;
+  gpu::TextureRef flux;  ///< that of diffuse surfaces, and of their Phong lobes where the maker adds these
   /// What the surfaces reflect, for paths that go on from them: null unless a reader asks for it.
   gpu::TextureRef albedo = nullptr;
   gpu::TextureRef specular = nullptr;  ///< null also where nothing is glossy
@@ -34,8 +34,7 @@ struct PortTraits<ReflectiveShadowMap> {
              {"position", "d2Array rgba32f", "posWorld; w = 1 on a surface, else 0", kAny},
              {"normal", "d2Array rgba32f",
               "unit normal towards the light; w = the surface area that the texel covers, m^2", kAny},
-             {"flux", "d2Array rgba32f",
-              "diffusely reflected flux of the texel, W; w = number of the layer's light"},
+             {"flux", "d2Array rgba32f", "reflected flux of the texel, W; w = number of the layer's light"},
              {"albedo", "d2Array rgba32f", "diffuse albedo; null unless asked for"},
              {"specular", "d2Array rgba32f",
               "Phong albedo, exponent in w; null unless asked for, and where nothing is glossy"}}};

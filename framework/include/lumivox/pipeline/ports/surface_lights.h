@@ -4,7 +4,8 @@
 
 namespace lumivox {
 
-/// Small lights on surfaces: discs that reflect diffusely to one side. A disc without flux is no light.
+/// Small lights on surfaces: discs that reflect to one side, diffusely or
+/// also by a Phong lobe. A disc without flux is no light.
 struct SurfaceLights {
   gpu::BufferRef lights;
   int count = 0;
@@ -18,7 +19,7 @@ struct PortTraits<SurfaceLights> {
         "SurfaceLights",
         "small lights on surfaces",
         {{"lights", "buffer",
-          "array of SurfaceLight in shaders/common/rsm.glsl: position, m, and area, m^2; normal; flux, W"}}};
+          "array of SurfaceLight in shaders/common/rsm.glsl: position, m, and area, m^2; normal; flux, W; and the lobe of a glossy patch (shaders/common/surface_lobe.glsl)"}}};
   }
   static void contents(const SurfaceLights& port, PortContents& contents) {
     contents.buffer("lights", port.lights);
