@@ -62,12 +62,6 @@ const std::string kErrorsWork = "errors", kTimesWork = "times", kReferenceWork =
 /// A whole point of a pipeline, on any scene.
 const std::string kPointWork = "point";
 
-/// Unique among the points of one scene.
-std::string idOf(const WantedPoint& point) {
-  return fmt::format("{}|{}|{}", point.loaded->shown, pointText(point.point.parameters),
-                     point.seed ? std::to_string(*point.seed) : "");
-}
-
 /// A point that does not fit into memory, say, must not cost the others.
 void failed(StoredRun& run, const std::string& why) {
   fail(run.point, why);
@@ -75,6 +69,11 @@ void failed(StoredRun& run, const std::string& why) {
 }
 
 }  // namespace
+
+std::string idOf(const WantedPoint& point) {
+  return fmt::format("{}|{}|{}", point.loaded->shown, pointText(point.point.parameters),
+                     point.seed ? std::to_string(*point.seed) : "");
+}
 
 Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                    ResultsStore& store, Scene scene, std::string sceneShown, Images images,
@@ -139,10 +138,14 @@ std::string Measurer::text(const WantedPoint& point) const {
 std::vector<bool> Measurer::held(const std::vector<WantedPoint>& points, bool retryFailed) const {
   std::vector<bool> result;
   for (const WantedPoint& point : points) {
-    const std::optional<StoredRun> stored = store_.find(key(point));
-    result.push_back(stored && (stored->point.failure.empty() || !retryFailed));
+    const std::optional<bool> succeeded = store_.succeeded(key(point));
+    result.push_back(succeeded && (*succeeded || !retryFailed));
   }
   return result;
+}
+
+void Measurer::shareWith(ResultsStore& into) {
+  into_ = &into;
 }
 
 Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers) {
@@ -153,10 +156,15 @@ Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t
     const std::string key = run.identity.key();
     // A failed point counts as missing where it is to be retried.
     const auto isThere = [&] {
-      const std::optional<StoredRun> stored = store_.find(key);
-      return stored && stored->point.failure.empty();
+      return store_.succeeded(key).value_or(false) ||
+             (into_ != nullptr && into_->succeeded(key).value_or(false));
     };
     if (isThere()) {
+      done_.insert(idOf(point));
+      ++byOthers;
+    } else if (batch.size() < kBatch && into_ != nullptr && !into_->claimFor(store_.file(), {key}).front()) {
+      // It comes with the store of another share.
+      ++leftToOthers_;
       done_.insert(idOf(point));
       ++byOthers;
     } else if (batch.size() == kBatch || !store_.claim({key}).front()) {
@@ -178,7 +186,10 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
   std::vector<WantedPoint> pending = points;
   std::vector<std::string> own;
   // A wrong text ends the batch; other processes may then try.
-  const Finally release([&] { store_.release(own); });
+  const Finally release([&] {
+    store_.release(own);
+    if (into_ != nullptr) into_->releaseFor(store_.file(), own);
+  });
   bool told = false;
   while (!pending.empty()) {
     std::size_t byOthers = 0;
@@ -200,12 +211,14 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
       store_.add(entry.run, entry.images);
       done_.insert(idOf(entry.wanted));
     }
+    if (into_ != nullptr && !own.empty()) into_->deliver(store_.file(), own);
     underWay_.clear();
     noteProgress();
     if (done) done(batch.empty() ? 0 : 1, byOthers);
   }
   std::vector<StoredRun> result;
-  for (const WantedPoint& point : points) result.push_back(store_.find(key(point)).value());
+  for (const WantedPoint& point : points)
+    if (std::optional<StoredRun> stored = store_.find(key(point))) result.push_back(*std::move(stored));
   return result;
 }
 
@@ -465,11 +478,18 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
     ++untimedDone_;
     if (!takenUp && entry.run.point.failure.empty()) noteCost(entry.wanted, kErrorsWork, seconds);
     store_.claim(keys);  // still at work
+    if (into_ != nullptr) into_->claimFor(store_.file(), keys);
     if (done && &entry != &batch.back()) done(1, 0);
   }
   const Clock::time_point start = Clock::now();
+  const MachineState before = machineState();
   timeTogether(batch);
-  for (const Entry& entry : batch) {
+  const MachineState after = machineState();
+  for (Entry& entry : batch) {
+    entry.run.node = nodeName();
+    entry.run.before = before;
+    entry.run.after = after;
+    entry.run.seconds = seconds_[entry.run.identity.key()];
     std::string parts;
     double sum = 0.0;
     parts_[entry.run.identity.key()] = entry.run.point.measuringSeconds;
@@ -484,12 +504,13 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
   double frames = 0.0;
   for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;
   const double all = secondsSince(start);
-  for (const Entry& entry : batch) {
+  for (Entry& entry : batch) {
     if (!entry.run.point.failure.empty() || !(entry.run.point.frameMs.median > 0.0)) continue;
     const WantedPoint& wanted = entry.wanted;
     const double seconds = all * entry.run.point.frameMs.median / frames;
     double& whole = seconds_[entry.run.identity.key()];
     whole += seconds;
+    entry.run.seconds = whole;
     noteCost(wanted, kTimesWork, seconds);
     costs_->add(wanted.loaded->shown, kPointWork, framesOf(wanted.point.parameters), whole);
   }

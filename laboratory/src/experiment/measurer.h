@@ -27,6 +27,9 @@ struct WantedPoint {
   std::optional<std::uint64_t> seed = std::nullopt;  ///< only this one, in place of the seeds of the options
 };
 
+/// Unique among the points of one scene.
+std::string idOf(const WantedPoint& point);
+
 class Measurer {
  public:
   /// Number of points whose timed frames take turns. Everything but a point's times is stored at once, so
@@ -44,6 +47,12 @@ class Measurer {
   std::vector<bool> held(const std::vector<WantedPoint>& points, bool retryFailed) const;
   std::string key(const WantedPoint& point) const;
   std::string text(const WantedPoint& point) const;
+
+  /// The store is a share of `into`, into which it will be merged: what is there is not measured again, and
+  /// what is claimed there for other stores is left to them.
+  void shareWith(ResultsStore& into);
+  /// Of the points of measure(), those left to other shares.
+  std::size_t leftToOthers() const { return leftToOthers_; }
 
   /// A point before it is measured: its identity and its names.
   StoredRun open(const WantedPoint& point) const;
@@ -137,6 +146,8 @@ class Measurer {
   TechniqueSet& techniques_;
   const ReportOptions& options_;
   ResultsStore& store_;
+  ResultsStore* into_ = nullptr;
+  std::size_t leftToOthers_ = 0;
   Scene scene_;
   std::string sceneShown_;
   Images images_;

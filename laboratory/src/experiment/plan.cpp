@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <unordered_map>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -163,34 +164,46 @@ ParameterValues defaultsOf(const Pipeline& pipeline, const ParameterValues& sett
   return defaults;
 }
 
-void addPoint(std::vector<PlannedPoint>& points, PlannedPoint point) {
-  const auto known = std::find_if(points.begin(), points.end(), [&](const PlannedPoint& other) {
-    return sameParameters(other.parameters, point.parameters);
-  });
-  if (known == points.end()) {
-    points.push_back(std::move(point));
-    return;
+/// Points by their parameters, so that plans may be long.
+class PointList {
+ public:
+  explicit PointList(std::vector<PlannedPoint> points = {}) {
+    for (PlannedPoint& point : points) add(std::move(point));
   }
-  for (const std::uint64_t seed : point.seeds)
-    if (std::find(known->seeds.begin(), known->seeds.end(), seed) == known->seeds.end())
-      known->seeds.push_back(seed);
-}
+  void add(PlannedPoint point) {
+    std::string text;
+    for (const auto& [name, value] : point.parameters) text += name + "=" + value.text() + "\n";
+    const auto [known, isNew] = indices_.emplace(std::move(text), points_.size());
+    if (isNew) {
+      points_.push_back(std::move(point));
+      return;
+    }
+    std::vector<std::uint64_t>& seeds = points_[known->second].seeds;
+    for (const std::uint64_t seed : point.seeds)
+      if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
+  }
+  std::vector<PlannedPoint> take() { return std::move(points_); }
+
+ private:
+  std::vector<PlannedPoint> points_;
+  std::unordered_map<std::string, std::size_t> indices_;
+};
 
 }  // namespace
 
 std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
                                          const std::vector<Sweep>& sweeps, bool progressive) {
   const ParameterValues defaults = defaultsOf(pipeline, settings);
-  std::vector<PlannedPoint> points;
+  PointList points;
   for (const Sweep& sweep : sweeps)
     for (const ParameterValues& swept : sweep.points()) {
       ParameterValues values = defaults;
       for (const auto& [name, value] : swept)
         if (settings.find(name) == settings.end()) values[name] = value;
       if (!progressive || framesOf(values) == 1) values.erase(kAccumulatedFrames);
-      addPoint(points, {sweep.name, values, sameParameters(values, defaults), sweep.seeds});
+      points.add({sweep.name, values, sameParameters(values, defaults), sweep.seeds});
     }
-  return points;
+  return points.take();
 }
 
 std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive) {
@@ -205,16 +218,16 @@ std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sw
 
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
                                         bool openSweeps, bool progressive, int frames) {
-  std::vector<PlannedPoint> points =
-      pointsOfSweeps(pipeline, settings, openSweeps ? pipeline.sweeps : std::vector<Sweep>(), progressive);
-  addPoint(points, {"", defaultsOf(pipeline, settings), true, {}});
+  PointList points(
+      pointsOfSweeps(pipeline, settings, openSweeps ? pipeline.sweeps : std::vector<Sweep>(), progressive));
+  points.add({"", defaultsOf(pipeline, settings), true, {}});
   PlannedPoint accumulating{kAccumulatedFrames, defaultsOf(pipeline, settings), false, {}};
   for (int now = 1; progressive && now < frames;) {
     now = std::min(2 * now, frames);
     accumulating.parameters[kAccumulatedFrames].number = now;
-    addPoint(points, accumulating);
+    points.add(accumulating);
   }
-  return points;
+  return points.take();
 }
 
 std::vector<std::string> settingsFor(const Pipeline& pipeline, const std::vector<std::string>& assignments) {

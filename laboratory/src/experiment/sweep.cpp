@@ -5,11 +5,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <unordered_set>
 
 #include "experiment/measurer.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/hash.h"
 #include "lumivox/pipeline/sweep_text.h"
 
 namespace lumivox {
@@ -64,22 +67,62 @@ class SweepPlan {
         addPoints(planOf(scene), all[i], wanted[i].second);
   }
 
+  /// Adds what a scene and the texts of the options name.
+  void addAll(PipelineChoice& choice, SweepSummary& summary) {
+    for (const std::filesystem::path& file : options_.measure.scenes) addScene(file, choice, summary);
+    for (const std::filesystem::path& file : options_.texts) addText(file, summary);
+    for (ScenePlan& plan : plans_) {
+      std::unordered_set<std::string> seen;  // several sweeps may name the same point
+      std::erase_if(plan.points, [&](const WantedPoint& point) { return !seen.insert(idOf(point)).second; });
+    }
+  }
+
+  /// Of everything that positions in the plan mean.
+  std::string hash() const {
+    Hasher hasher;
+    for (const ScenePlan& plan : plans_) {
+      hasher.add(plan.measurer->scene().hash.text());
+      for (const WantedPoint& point : plan.points)
+        hasher.add(point.loaded->pipeline.hash.text()).add(idOf(point));
+    }
+    return hasher.finish().text();
+  }
+
+  std::size_t points() const {
+    std::size_t count = 0;
+    for (const ScenePlan& plan : plans_) count += plan.points.size();
+    return count;
+  }
+
+  /// Keeps the points of the wanted share.
+  void keepShare() {
+    if (options_.shard.isWhole() && options_.points.empty()) return;
+    std::vector<bool> kept(points(), false);
+    for (const std::size_t position : positionsOf(options_.shard, options_.points, hash(), kept.size()))
+      kept[position] = true;
+    std::size_t position = 0;
+    for (ScenePlan& plan : plans_)
+      std::erase_if(plan.points, [&](const WantedPoint&) { return !kept[position++]; });
+  }
+
   /// Collects the points that the store lacks; counts those it has.
-  std::size_t findMissing(SweepSummary& summary) {
+  std::size_t findMissing(SweepSummary& summary, const ResultsStore* into) {
     std::size_t total = 0;
     for (ScenePlan& plan : plans_) {
-      const std::vector<bool> held = plan.measurer->held(plan.points, options_.retryFailed);
-      std::set<std::string> seen;  // several sweeps may name the same point
-      for (std::size_t i = 0; i < plan.points.size(); ++i) {
-        const std::string key = plan.measurer->key(plan.points[i]);
+      std::set<std::string> seen;  // scenes may be equal
+      for (const WantedPoint& point : plan.points) {
+        const StoredRun run = plan.measurer->open(point);
+        const std::string key = run.identity.key();
         if (!seen.insert(key).second) continue;
         summary.keys.push_back(key);
-        if (held[i]) {
+        std::optional<bool> succeeded = store_.succeeded(key);
+        if (!succeeded && into != nullptr) succeeded = into->succeeded(key);
+        if (succeeded && (*succeeded || !options_.retryFailed)) {
           ++summary.held;
           continue;
         }
-        if (options_.planOnly) summary.missing.push_back(plan.measurer->text(plan.points[i]));
-        plan.missing.push_back(plan.points[i]);
+        if (options_.planOnly) summary.missing.push_back(plan.measurer->text(point));
+        plan.missing.push_back(point);
       }
       total += plan.missing.size();
     }
@@ -94,18 +137,19 @@ class SweepPlan {
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, failure);
     const auto [index, isNew] = indices_.emplace(canonical, plans_.size());
     if (isNew)
-      plans_.push_back(
-          {std::make_unique<Measurer>(device_, techniques_, options_.measure, store_, loadScene_(file),
-                                      shownPath(file), Measurer::Images::no, costs_),
-           {},
-           {}});
+      plans_.push_back({std::make_unique<Measurer>(
+                            device_, techniques_, options_.measure, store_, loadScene_(file), shownPath(file),
+                            options_.forReport ? Measurer::Images::kept : Measurer::Images::no, costs_),
+                        {},
+                        {}});
     return plans_[index->second];
   }
 
-  static void addPoints(ScenePlan& plan, const LoadedPipeline* loaded,
-                        const std::vector<PlannedPoint>& points) {
+  void addPoints(ScenePlan& plan, const LoadedPipeline* loaded,
+                 const std::vector<PlannedPoint>& points) const {
     for (const PlannedPoint& point : points) {
-      if (point.seeds.empty()) plan.points.push_back({loaded, point, {}});
+      if (point.seeds.empty() || options_.forReport) plan.points.push_back({loaded, point, {}});
+      if (options_.forReport) continue;
       for (const std::uint64_t seed : point.seeds) plan.points.push_back({loaded, point, seed});
     }
   }
@@ -134,9 +178,13 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   PipelineChoice choice(measure, techniques);
   SweepPlan plan(device, techniques, options, store, loadScene);
   // All texts are checked before the first image is rendered.
-  for (const std::filesystem::path& file : measure.scenes) plan.addScene(file, choice, summary);
-  for (const std::filesystem::path& file : options.texts) plan.addText(file, summary);
-  const std::size_t total = plan.findMissing(summary);
+  plan.addAll(choice, summary);
+  plan.keepShare();
+  std::optional<ResultsStore> into;
+  if (!options.into.empty()) into.emplace(options.into);
+  // A share that goes on elsewhere must not wait for what it had claimed in its own store.
+  if (!options.shard.isWhole() && !options.planOnly) store.releaseElsewhere();
+  const std::size_t total = plan.findMissing(summary, into ? &*into : nullptr);
 
   std::size_t finished = 0;
   ScenePlan* first = nullptr;
@@ -154,15 +202,93 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   for (ScenePlan& scene : plan.scenes()) {
     if (options.planOnly) break;
     if (first == nullptr && !scene.missing.empty()) first = &scene;
+    if (into) scene.measurer->shareWith(*into);
     scene.measurer->lookAt(scene.missing);
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
+    summary.leftToOthers += scene.measurer->leftToOthers();
   }
-  // The first points are timed again at the end, to learn how far repeated times differ on this machine.
-  if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
+  // The first points are timed again at the end, to learn how far repeated times differ on this machine. A
+  // share is short.
+  if (first != nullptr && summary.measured > 0)
+    first->measurer->control(first->missing, options.shard.isWhole() ? Measurer::kBatch : 1);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));
   return summary;
+}
+
+namespace {
+
+/// What a store knows of times: of a point's pipeline on its scene, on any scene, and of all.
+class KnownTimes {
+ public:
+  void add(const std::string& scene, const std::string& pipeline, double seconds) {
+    if (!(seconds > 0.0)) return;
+    for (const std::string& subject : {scene + "|" + pipeline, "|" + pipeline}) {
+      Sum& sum = sums_[subject];
+      sum.seconds += seconds;
+      sum.points += 1.0;
+    }
+  }
+  /// s; 0: unknown.
+  double of(const std::string& scene, const std::string& pipeline) const {
+    for (const std::string& subject : {scene + "|" + pipeline, "|" + pipeline})
+      if (const auto found = sums_.find(subject); found != sums_.end())
+        return found->second.seconds / found->second.points;
+    return 0.0;
+  }
+
+ private:
+  struct Sum {
+    double seconds = 0.0, points = 0.0;
+  };
+  std::map<std::string, Sum> sums_;
+};
+
+}  // namespace
+
+SharedPlan planSweep(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options,
+                     const std::function<Scene(const std::filesystem::path&)>& loadScene, std::size_t tasks,
+                     double taskSeconds) {
+  ResultsStore into(options.into);
+  SweepSummary summary;
+  PipelineChoice choice(options.measure, techniques);
+  SweepPlan plan(device, techniques, options, into, loadScene);
+  plan.addAll(choice, summary);
+  std::unordered_set<std::string> held;
+  KnownTimes times;
+  into.forEachMeasured([&](const RunIdentity& identity, const std::string& scene, const std::string& pipeline,
+                           double seconds) {
+    held.insert(identity.anywhere());
+    times.add(scene, pipeline, seconds);
+  });
+  std::vector<std::size_t> missing;
+  std::vector<double> costs;
+  std::size_t position = 0;
+  for (const ScenePlan& scene : plan.scenes())
+    for (const WantedPoint& point : scene.points) {
+      const StoredRun run = scene.measurer->open(point);
+      if (held.count(run.identity.anywhere()) == 0) {
+        missing.push_back(position);
+        costs.push_back(times.of(run.point.scene, run.point.pipeline));
+      }
+      ++position;
+    }
+  return sharedPlan(plan.hash(), position, missing, costs, tasks, taskSeconds);
+}
+
+bool holdsOtherVersions(const ResultsStore& store, TechniqueSource& techniques) {
+  for (const auto& [what, versions] : store.versions()) {
+    constexpr std::string_view kTechnique = "technique ";
+    std::string here = lumivoxVersion();
+    if (what.rfind(kTechnique, 0) == 0) {
+      const Technique* technique = techniques.technique(what.substr(kTechnique.size()));
+      if (technique == nullptr) continue;
+      here = technique->hash.text() + "+" + technique->shaders.hash.text();
+    }
+    if (versions != std::set<std::string>{here}) return true;
+  }
+  return false;
 }
 
 }  // namespace lumivox

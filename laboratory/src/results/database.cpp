@@ -1,6 +1,7 @@
 #include "results/database.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <limits>
@@ -19,6 +20,11 @@ constexpr int kPatienceMs = 60'000;
 
 Database::Database(const std::filesystem::path& file, bool write) : file_(file) {
   requireRegularFile(file);
+  // A process that was killed while it wrote leaves a journal, which only a writer may roll back.
+  std::error_code ignored;
+  if (!write && std::filesystem::exists(file.string() + "-journal", ignored) &&
+      access(file.c_str(), W_OK) == 0)
+    Database(file, true).pragma("user_version");
   sqlite3* handle = nullptr;
   const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   const int status = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
@@ -118,6 +124,12 @@ void Statement::bindOne(int index, double number) {
   const int status = std::isnan(number) ? sqlite3_bind_null(statement_.get(), index)
                                         : sqlite3_bind_double(statement_.get(), index, number);
   if (status != SQLITE_OK) database_.fail();
+}
+
+void Statement::bindColumn(int index, const Statement& from, int column) {
+  if (sqlite3_bind_value(statement_.get(), index, sqlite3_column_value(from.statement_.get(), column)) !=
+      SQLITE_OK)
+    database_.fail();
 }
 
 void Statement::bindInteger(int index, std::int64_t value) {

@@ -49,9 +49,12 @@ class Statement {
 
   /// Binds one value; indices start at 1.
   void bindOne(int index, const Blob& blob);
+  /// The value of a column of another statement's row, as it is.
+  void bindColumn(int index, const Statement& from, int column);
   /// Binds lists and objects as their text.
   void bindJson(int index, const nlohmann::ordered_json& json);
   void bindOne(int index, const std::string& text);
+  void bindOne(int index, std::nullptr_t) { bindJson(index, nullptr); }
   void bindOne(int index, const char* text) { bindOne(index, std::string(text)); }
   void bindOne(int index, double number);
   template <class T>
@@ -93,8 +96,9 @@ class Database {
 /// Rolled back unless committed.
 class Transaction {
  public:
-  explicit Transaction(const Database& database) : database_(database) {
-    database.execute("BEGIN IMMEDIATE");
+  enum class For { reading, writing };
+  explicit Transaction(const Database& database, For purpose = For::writing) : database_(database) {
+    database.execute(purpose == For::writing ? "BEGIN IMMEDIATE" : "BEGIN");
   }
   ~Transaction();
   void commit();

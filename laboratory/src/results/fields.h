@@ -146,6 +146,21 @@ void fields(Is<StoredRun> auto& run, auto&& visit) {
         run.point.whyNotCounted);
   visit({"failure", "why there are no numbers; empty when there are", kCsv}, run.point.failure);
   visit({"command", "repeats the point", kCsv}, run.point.command);
+  visit({"node", nullptr, kCsv}, run.node);
+  visit({"measuring_seconds",
+         "the machine's name in its network; how long it measured, its share of a batch's times included",
+         kCsv},
+        run.seconds);
+  visit({"load_before", nullptr, kCsv}, run.before.load);
+  visit({"load_after", nullptr, kCsv}, run.after.load);
+  visit({"clock_mhz_before", nullptr, kCsv}, run.before.clockMhz);
+  visit({"clock_mhz_after", nullptr, kCsv}, run.after.clockMhz);
+  visit({"device_clock_mhz_before", nullptr, kCsv}, run.before.deviceClockMhz);
+  visit(
+      {"device_clock_mhz_after",
+       "around its times: runnable processes, the mean clock of the processors, the GPU's clock; NULL where the system does not say",
+       kCsv},
+      run.after.deviceClockMhz);
   visit({"voxels"}, run.point.voxels);
   visit({"health_findings", nullptr, kCsv}, run.point.healthFindings);
   visit({"notes"}, run.point.notes);

@@ -7,7 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 #include "lumivox/base/error.h"
@@ -40,6 +43,70 @@ std::string RunIdentity::key() const {
   return hasher.finish().text();
 }
 
+std::string RunIdentity::anywhere() const {
+  RunIdentity work = *this;
+  work.device = work.driver = work.shaderInput = work.host = {};
+  return work.key();
+}
+
+std::string nodeName() {
+  utsname system{};
+  uname(&system);
+  return system.nodename;
+}
+
+namespace {
+
+/// The first number of a file of the system; NaN without one.
+double numberIn(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  double value = 0.0;
+  return stream >> value ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+double processorClockMhz() {
+  constexpr double kMhzOfKiloHz = 1e-3;
+  double sum = 0.0;
+  int count = 0;
+  const auto add = [&](double mhz) {
+    if (!(mhz > 0.0)) return;
+    sum += mhz;
+    ++count;
+  };
+  const long processors = sysconf(_SC_NPROCESSORS_CONF);
+  for (long i = 0; i < processors; ++i)
+    add(kMhzOfKiloHz * numberIn(fmt::format("/sys/devices/system/cpu/cpu{}/cpufreq/scaling_cur_freq", i)));
+  if (count == 0) {
+    std::ifstream information("/proc/cpuinfo");
+    for (std::string line; std::getline(information, line);)
+      if (line.rfind("cpu MHz", 0) == 0 && line.find(": ") != std::string::npos)
+        add(std::strtod(line.c_str() + line.find(": ") + 2, nullptr));
+  }
+  return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / count;
+}
+
+/// The highest of the graphics cards that the kernel knows the clock of.
+double deviceClockMhz() {
+  constexpr double kMhzOfHz = 1e-6;
+  double clock = std::numeric_limits<double>::quiet_NaN();
+  std::error_code failure;
+  for (std::filesystem::directory_iterator card("/sys/class/drm", failure), end; !failure && card != end;
+       card.increment(failure)) {
+    clock = std::fmax(clock, numberIn(card->path() / "gt_act_freq_mhz"));
+    std::error_code none;
+    for (std::filesystem::directory_iterator sensor(card->path() / "device/hwmon", none);
+         !none && sensor != std::filesystem::directory_iterator(); sensor.increment(none))
+      clock = std::fmax(clock, kMhzOfHz * numberIn(sensor->path() / "freq1_input"));
+  }
+  return clock;
+}
+
+}  // namespace
+
+MachineState machineState() {
+  return {numberIn("/proc/loadavg"), processorClockMhz(), deviceClockMhz()};
+}
+
 std::string frameworkHash() {
   static const std::string hash = [] {
     Hasher hasher;
@@ -55,6 +122,10 @@ std::string frameworkHash() {
     return hasher.finish().text();
   }();
   return hash;
+}
+
+std::string lumivoxVersion() {
+  return fmt::format("{}, libraries {}", LUMIVOX_VERSION, frameworkHash());
 }
 
 TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls) {

@@ -227,6 +227,21 @@ void ResultsStore::addUntimed(const StoredRun& run, const std::vector<StoredImag
   transaction.commit();
 }
 
+std::optional<bool> ResultsStore::succeeded(const std::string& key) const {
+  Statement statement(state_->database, "SELECT failure = '' FROM runs WHERE key = ? AND complete");
+  if (!statement.bind(key).step()) return std::nullopt;
+  return statement.integer(0) != 0;
+}
+
+void ResultsStore::forEachMeasured(const std::function<void(const RunIdentity&, const std::string&,
+                                                            const std::string&, double)>& visit) const {
+  Statement row(
+      state_->database,
+      fmt::format("SELECT scene, pipeline, measuring_seconds, {} FROM runs WHERE complete AND failure = ''",
+                  results::columnNames<RunIdentity>()));
+  while (row.step()) visit(results::recordAt<RunIdentity>(row, 3), row.text(0), row.text(1), row.number(2));
+}
+
 std::optional<StoredRun> ResultsStore::findUntimed(const std::string& key) const {
   return state_->find(key, /*complete=*/false);
 }
@@ -285,48 +300,6 @@ std::size_t ResultsStore::remove(const RunFilter& filter) {
   for (const StoredRun& run : state_->runs(filter, /*complete=*/false)) statement.run(run.id);
   transaction.commit();
   return chosen.size();
-}
-
-MergeCount ResultsStore::merge(const ResultsStore& other) {
-  return merge(other, [](const std::string&) { return true; });
-}
-
-MergeCount ResultsStore::merge(const ResultsStore& other, const std::vector<std::string>& keys) {
-  const std::set<std::string> wanted(keys.begin(), keys.end());
-  return merge(other, [&](const std::string& key) { return wanted.count(key) > 0; });
-}
-
-MergeCount ResultsStore::merge(const ResultsStore& other,
-                               const std::function<bool(const std::string&)>& isWanted) {
-  // The other store is read before this one is locked.
-  std::vector<StoredRun> theirs;
-  Statement here(state_->database, "SELECT 1 FROM runs WHERE key = ? AND complete AND failure = ''");
-  Statement keys(other.state_->database, "SELECT key FROM runs WHERE complete ORDER BY id");
-  RunReader reader(other.state_->database, "key = ? AND complete");
-  while (keys.step())
-    if (const std::string key = keys.text(0); isWanted(key) && !here.bind(key).step()) {
-      reader.rows.bind(key);
-      theirs.push_back(*reader.next());
-    }
-  here.reset();
-  const std::vector<StressCell> cells = other.stressCells();
-  const std::vector<PeakRate> peakRates = other.peakRates();
-  const auto controls = other.state_->controls();
-  Transaction transaction(state_->database);
-  MergeCount count;
-  for (const StoredRun& run : theirs)
-    count.runs += state_->add(run, other.images(run.identity.key()), /*complete=*/true) ? 1 : 0;
-  count.cells = state_->put("stress_cells", cells, /*olderAlone=*/true);
-  count.peakRates = state_->put("peak_rates", peakRates, /*olderAlone=*/true);
-  for (const auto& [key, control] : controls) state_->add(key, control);
-  transaction.commit();
-  return count;
-}
-
-MergeCount ResultsStore::import(const fs::path& file) {
-  const ResultsStore earlier(std::make_unique<State>(file, Mode::read));
-  results::showEarlierStore(earlier.state_->database);
-  return merge(earlier);
 }
 
 std::string ResultsStore::describe() {

@@ -54,13 +54,18 @@ bool CellFilter::everything() const {
 
 template <class T>
 std::size_t ResultsStore::State::put(const char* table, const std::vector<T>& records, bool olderAlone) {
-  Statement newer(database, fmt::format("SELECT 1 FROM {} WHERE key = ? AND created >= ?", table));
+  Statement newer(database, fmt::format("SELECT created, {} FROM {} WHERE key = ? AND created >= ?",
+                                        results::columnNames<T>(), table));
   Statement remove(database, fmt::format("DELETE FROM {} WHERE key = ?", table));
   Statement insert(database, results::insertSql<T>(table, "key"));
   std::size_t count = 0;
   for (const T& record : records) {
     const std::string key = keyOf(record);
-    const bool stays = olderAlone && newer.bind(key, record.created).step();
+    // Of two of one second the same one stays, whichever came first.
+    const bool stays =
+        olderAlone && newer.bind(key, record.created).step() &&
+        (newer.text(0) > record.created ||
+         results::jsonOf(results::recordAt<T>(newer, 1)).dump() >= results::jsonOf(record).dump());
     newer.reset();
     if (stays) continue;
     remove.run(key);
@@ -91,6 +96,11 @@ std::vector<StressCell> ResultsStore::stressCells(const CellFilter& filter) cons
     if (matches(filter, cell)) cells.push_back(std::move(cell));
   }
   return cells;
+}
+
+bool ResultsStore::hasCell(const std::string& key) const {
+  Statement row(state_->database, "SELECT 1 FROM stress_cells WHERE key = ?");
+  return row.bind(key).step();
 }
 
 std::size_t ResultsStore::removeCells(const CellFilter& filter) {

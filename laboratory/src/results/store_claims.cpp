@@ -29,6 +29,10 @@ RunClaim ownClaim() {
 }
 
 bool lives(const RunClaim& claim) {
+  if (claim.machine == kDelivered) {
+    std::error_code failure;
+    return std::filesystem::exists(claim.command, failure);
+  }
   if (claim.machine == machineIdentity())
     return claim.started != 0 && startOf(claim.process) == claim.started;
   return claim.expires > static_cast<std::int64_t>(std::time(nullptr));
@@ -43,6 +47,7 @@ bool same(const RunClaim& a, const RunClaim& b) {
 }
 
 bool stands(const RunClaim& claim) {
+  if (claim.machine == results::kDelivered) return results::lives(claim);
   return claim.expires > static_cast<std::int64_t>(std::time(nullptr)) && results::lives(claim);
 }
 
@@ -78,6 +83,53 @@ void ResultsStore::release(const std::vector<std::string>& keys) {
   transaction.commit();
 }
 
+namespace {
+
+std::string claimantOf(const std::filesystem::path& part) {
+  std::error_code ignored;
+  return std::filesystem::absolute(part, ignored).string();
+}
+
+}  // namespace
+
+std::vector<bool> ResultsStore::claimFor(const std::filesystem::path& part,
+                                         const std::vector<std::string>& keys) {
+  RunClaim own = ownClaim();
+  own.command = claimantOf(part);
+  std::vector<bool> claimed;
+  Transaction transaction(state_->database);
+  Statement insert(state_->database, "INSERT OR REPLACE INTO claims VALUES (?,?,?,?,?,?)");
+  for (const std::string& key : keys) {
+    const std::optional<RunClaim> there = claimIn(state_->database, key);
+    // A task that goes on elsewhere takes up what it had claimed for the same file.
+    claimed.push_back(!there || there->command == own.command || !stands(*there));
+    if (claimed.back()) insert.run(key, own.machine, own.process, own.started, own.command, own.expires);
+  }
+  transaction.commit();
+  return claimed;
+}
+
+void ResultsStore::releaseFor(const std::filesystem::path& part, const std::vector<std::string>& keys) {
+  Transaction transaction(state_->database);
+  Statement remove(state_->database, "DELETE FROM claims WHERE key = ? AND command = ? AND machine <> ?");
+  for (const std::string& key : keys) remove.run(key, claimantOf(part), results::kDelivered);
+  transaction.commit();
+}
+
+void ResultsStore::deliver(const std::filesystem::path& part, const std::vector<std::string>& keys) {
+  const std::int64_t now = std::time(nullptr);
+  Transaction transaction(state_->database);
+  Statement insert(state_->database, "INSERT OR REPLACE INTO claims VALUES (?,?,0,0,?,?)");
+  for (const std::string& key : keys) insert.run(key, results::kDelivered, claimantOf(part), now);
+  transaction.commit();
+}
+
+void ResultsStore::releaseElsewhere() {
+  Transaction transaction(state_->database);
+  Statement(state_->database, "DELETE FROM claims WHERE machine <> ?").run(machineIdentity());
+  transaction.commit();
+}
+
 std::optional<RunClaim> ResultsStore::claimedByOther(const std::string& key) const {
   const std::optional<RunClaim> there = claimIn(state_->database, key);
   return there && !same(*there, ownClaim()) && stands(*there) ? there : std::nullopt;
@@ -86,7 +138,11 @@ std::optional<RunClaim> ResultsStore::claimedByOther(const std::string& key) con
 void ResultsStore::State::add(const std::string& key, const results::Control& control) {
   const TimingStatistics& time = control.time;
   if (time.repeats > 0)
-    Statement(database, "INSERT OR IGNORE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?")
+    Statement(
+        database,
+        "INSERT INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ? ON CONFLICT DO UPDATE SET "
+        "median_ms = excluded.median_ms, lower_quartile_ms = excluded.lower_quartile_ms, upper_quartile_ms "
+        "= excluded.upper_quartile_ms, repeats = excluded.repeats WHERE excluded.median_ms < median_ms")
         .run(control.created, control.what, time.median, time.lowerQuartile, time.upperQuartile, time.repeats,
              key);
 }
@@ -100,12 +156,15 @@ void ResultsStore::addControl(const std::string& key, const TimingStatistics& fr
   transaction.commit();
 }
 
-std::vector<std::pair<std::string, results::Control>> ResultsStore::State::controls() const {
+std::vector<std::pair<std::string, results::Control>> ResultsStore::State::controls(
+    const std::string& key) const {
   std::vector<std::pair<std::string, results::Control>> controls;
-  Statement row(database,
-                "SELECT r.key, c.created, c.what, c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, "
-                "c.repeats FROM controls c JOIN runs r ON r.id = c.run");
-  while (row.step()) {
+  Statement row(
+      database,
+      std::string("SELECT r.key, c.created, c.what, c.median_ms, c.lower_quartile_ms, "
+                  "c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = c.run WHERE ") +
+          (key.empty() ? "? = ''" : "r.key = ?"));
+  for (row.bind(key); row.step();) {
     results::Control control{row.text(1), row.text(2), {}};
     control.time.median = row.number(3);
     control.time.lowerQuartile = row.number(4);

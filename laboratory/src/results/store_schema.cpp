@@ -187,9 +187,11 @@ std::vector<Table> tables() {
            "NULL | upper_quartile_ms REAL NOT NULL | repeats INTEGER NOT NULL -- as in `timings`"),
        "PRIMARY KEY (run, created, what)", "STRICT, WITHOUT ROWID"},
       {"claims", "points that are being measured",
-       columns("key TEXT PRIMARY KEY -- of the run | " + kProcess +
-               " -- by which process: start and name space of its machine, number, start, command "
-               "line | expires INTEGER NOT NULL -- until when, s since 1970"),
+       columns(
+           "key TEXT PRIMARY KEY -- of the run | " + kProcess +
+           " -- by which process: start and name space of its machine, number, start, command "
+           "line | expires INTEGER NOT NULL -- until when, s since 1970. Of a point for a store that is merged "
+           "later, the command is that file, and the machine `delivered` once it holds the run"),
        "", "STRICT, WITHOUT ROWID"},
       {"reports", "of an unfinished report alone: who keeps points in this store until a page is written",
        columns(

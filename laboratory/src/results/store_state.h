@@ -11,6 +11,9 @@ namespace lumivox::results {
 /// Whether a word of a filter names a file: by its path as given, or by its stem.
 bool namesFile(const std::string& wanted, const std::string& file);
 
+/// The machine of a claim whose point is measured: its command is the file that holds the run.
+inline constexpr const char* kDelivered = "delivered";
+
 /// A claim of this process, from now on.
 RunClaim ownClaim();
 /// Whether the process of a claim still runs. On other machines, only the age of the claim tells.
@@ -45,8 +48,8 @@ struct ResultsStore::State {
 
   std::optional<StoredRun> find(const std::string& key, bool complete) const;
   std::vector<StoredRun> runs(const RunFilter& filter, bool complete) const;
-  /// All repeated measurements with the keys of their runs.
-  std::vector<std::pair<std::string, results::Control>> controls() const;
+  /// All repeated measurements, or those of a run, with the keys of their runs.
+  std::vector<std::pair<std::string, results::Control>> controls(const std::string& key = {}) const;
 };
 
 }  // namespace lumivox

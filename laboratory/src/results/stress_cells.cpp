@@ -38,6 +38,12 @@ std::string StressCell::key() const {
   return hasher.finish().text();
 }
 
+std::string StressCell::anywhere() const {
+  StressCell cell = *this;
+  cell.device = cell.driver = cell.shaderInput = cell.host = {};
+  return cell.key();
+}
+
 Json toJson(const StressCell& cell) {
   Json json = results::jsonOf(cell);
   if (cell.id != 0) json["id"] = cell.id;

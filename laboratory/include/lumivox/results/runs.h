@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,7 +31,20 @@ struct RunIdentity {
   std::string device, driver, shaderInput, host;  ///< host: processor and system
 
   std::string key() const;  ///< 32 hexadecimal digits
+  /// The same for whatever machine measures it: two runs with it differ in device, driver, shader input or
+  /// host at most.
+  std::string anywhere() const;
 };
+
+/// How busy the machine of a measurement was and how fast it ran; NaN where the system does not say.
+struct MachineState {
+  double load = std::numeric_limits<double>::quiet_NaN();            ///< runnable processes, mean of a minute
+  double clockMhz = std::numeric_limits<double>::quiet_NaN();        ///< of the processors, their mean
+  double deviceClockMhz = std::numeric_limits<double>::quiet_NaN();  ///< of the GPU's cores
+};
+MachineState machineState();
+/// The machine's name in its network.
+std::string nodeName();
 
 /// One record of the store.
 struct StoredRun {
@@ -39,8 +53,11 @@ struct StoredRun {
   std::string created;  ///< "2015-10-21 16:29:00 UTC"
   std::string version;  ///< of lumivox
   std::string sceneName, pipelineName;
-  bool isDefault = false;  ///< every parameter as the text has it
-  ReportPoint point;       ///< `command` repeats it; a point with `failure` has no numbers
+  bool isDefault = false;      ///< every parameter as the text has it
+  ReportPoint point;           ///< `command` repeats it; a point with `failure` has no numbers
+  std::string node;            ///< machine that took its times
+  double seconds = 0.0;        ///< that measuring it took
+  MachineState before, after;  ///< of its times
 };
 
 /// The times of a stored run measured once more, later: any difference is variation of the machine.
@@ -70,6 +87,9 @@ struct StoredImage {
 
 /// Hash of the framework's libraries as they are loaded: part of every identity.
 std::string frameworkHash();
+
+/// This version and its libraries, as ResultsStore::versions() names them.
+std::string lumivoxVersion();
 
 /// The machine that times depend on, besides the work.
 struct DeviceIdentity {

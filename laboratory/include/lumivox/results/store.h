@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -81,6 +83,13 @@ class ResultsStore {
   std::vector<bool> claim(const std::vector<std::string>& keys);
   /// Gives up one's own claims.
   void release(const std::vector<std::string>& keys);
+  /// The same for points that are stored in another file and merged into this store later. A claim that was
+  /// delivered stands as long as that file exists; merging the file ends all claims for it.
+  std::vector<bool> claimFor(const std::filesystem::path& part, const std::vector<std::string>& keys);
+  void releaseFor(const std::filesystem::path& part, const std::vector<std::string>& keys);
+  void deliver(const std::filesystem::path& part, const std::vector<std::string>& keys);
+  /// Ends the claims of other machines. Only for a store that one process uses at a time.
+  void releaseElsewhere();
   /// Of another process that is at this point now.
   std::optional<RunClaim> claimedByOther(const std::string& key) const;
 
@@ -100,11 +109,24 @@ class ResultsStore {
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
   /// How many were removed, those without times not counted.
   std::size_t remove(const RunFilter& filter);
+  /// Whether the run with this key did not fail; empty: it is not here.
+  std::optional<bool> succeeded(const std::string& key) const;
+  /// Calls visit(identity, scene, pipeline, seconds) for each run that did not fail.
+  void forEachMeasured(const std::function<void(const RunIdentity&, const std::string&, const std::string&,
+                                                double)>& visit) const;
   /// Takes over the runs of another store that are not here, its controls, and the cells and peak rates that
-  /// are not here or are older here. In one transaction.
+  /// are not here or are older here. In one transaction. Of two runs with one key the one that did not fail
+  /// stays, of two such the earlier.
   MergeCount merge(const ResultsStore& other);
   /// The same for the runs with these keys alone.
   MergeCount merge(const ResultsStore& other, const std::vector<std::string>& keys);
+  /// The same for many stores, in one transaction for all of them: the result is the same in whichever order
+  /// they are given, and merging them once more changes nothing. Error that names two stores if their
+  /// results, or those here, come from different versions of Lumivox or of a technique, unless `mixed`. The
+  /// counts are in the order of the files.
+  std::vector<MergeCount> merge(const std::vector<std::filesystem::path>& files, bool mixed);
+  /// What made the results: "lumivox" and the techniques, each with its versions.
+  std::map<std::string, std::set<std::string>> versions() const;
 
   /// The same from a store that an earlier version wrote, with schema 1 to 9.
   MergeCount import(const std::filesystem::path& file);
@@ -112,6 +134,7 @@ class ResultsStore {
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.
   void add(const std::vector<StressCell>& cells);
   std::vector<StressCell> stressCells(const CellFilter& filter = {}) const;
+  bool hasCell(const std::string& key) const;
   std::size_t removeCells(const CellFilter& filter);  ///< how many were removed
   /// The newest peak rates of each device; those of the same name take the place of the older ones.
   void add(const std::vector<PeakRate>& peakRates);
@@ -128,7 +151,7 @@ class ResultsStore {
   friend class results::UnfinishedStore;
   struct State;
   explicit ResultsStore(std::unique_ptr<State> state);
-  MergeCount merge(const ResultsStore& other, const std::function<bool(const std::string&)>& isWanted);
+  MergeCount mergeRows(const ResultsStore& other, const std::function<bool(const std::string&)>& isWanted);
   std::unique_ptr<State> state_;
 };
 

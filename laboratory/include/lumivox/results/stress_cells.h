@@ -44,7 +44,8 @@ struct StressCell {
   std::map<std::string, std::string> techniques;  ///< name to hash of library and shader pack
   std::string device, driver, shaderInput, host;
 
-  std::string key() const;  ///< 32 hexadecimal digits
+  std::string key() const;       ///< 32 hexadecimal digits
+  std::string anywhere() const;  ///< the same for whatever machine runs it
 };
 
 /// One cell as a JSON object in one line, and back. Error for a text that is none.
