@@ -199,7 +199,23 @@ void keep(const std::filesystem::path& file, const LayeredImage& image) {
   }
 }
 
+/// Keeps a reference, or says why not.
+void keepForLater(const std::filesystem::path& file, LayeredImage& image) {
+  image.attributes[kContentHash] = contentOf(image).text();
+  try {
+    keep(file, image);
+  } catch (const Error& error) {
+    // The image is good; only the next call pays.
+    logWarning("the reference could not be kept for later: {}", error.what());
+  }
+  image.attributes.erase(kContentHash);
+}
+
 }  // namespace
+
+void keepInCache(const Scene& scene, const ResolvedOptions& resolved, LayeredImage& image) {
+  keepForLater(cacheDirectory() / entryName(cacheKey(scene, resolved)), image);
+}
 
 ContentHash contentOf(const Scene& scene) {
   if (scene.hash != ContentHash{}) return scene.hash;
@@ -234,6 +250,8 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   for (const auto& capture : scene.captures)
     if (capture->realScene)
       hasher.add("stands for").add(capture->realScene->hash.high).add(capture->realScene->hash.low);
+  // Sums of several blocks are rounded otherwise than one.
+  if (options.samplesPerPixel > kBlockSamples) hasher.add("blocks").add(kBlockSamples);
   hasher.add(options.samplesPerPixel)
       .add(options.bounces)
       .add(options.roulette)
@@ -285,14 +303,7 @@ LayeredImage cachedReference(const Scene& scene, const ReferenceOptions& options
     return *std::move(entry);
   }
   LayeredImage image = renderReference(scene, options);
-  image.attributes[kContentHash] = contentOf(image).text();
-  try {
-    keep(file, image);
-  } catch (const Error& error) {
-    // The image is good; only the next call pays.
-    logWarning("the reference could not be kept for later: {}", error.what());
-  }
-  image.attributes.erase(kContentHash);
+  keepForLater(file, image);
   return image;
 }
 

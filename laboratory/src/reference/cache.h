@@ -29,6 +29,9 @@ std::string entryName(const ContentHash& key);
 /// Marks an entry as used, so that it is not among the first to be removed.
 void markAsUsed(const std::filesystem::path& file);
 
+/// Keeps a reference in the cache; a failure is a warning.
+void keepInCache(const Scene& scene, const ResolvedOptions& resolved, LayeredImage& image);
+
 std::map<std::string, std::string> provenance(const Scene& scene, const ResolvedOptions& resolved);
 
 }  // namespace lumivox::reference

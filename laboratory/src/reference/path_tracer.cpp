@@ -159,28 +159,43 @@ void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>
   arena.execute([&] { tbb::parallel_for(0, tiles.count(), work); });
 }
 
-}  // namespace reference
-
-LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& given) {
-  using namespace reference;
-  ResolvedOptions resolved = resolve(virtualScene, given);
+PreparedScene::PreparedScene(const Scene& virtualScene, const ReferenceOptions& given)
+    : resolved(resolve(virtualScene, given)),
+      merged(withRealScenes(virtualScene)),
+      scene(merged ? *merged : virtualScene) {
   const ReferenceOptions& options = resolved.options;
-  const std::optional<Scene> merged = withRealScenes(virtualScene);
-  const Scene& scene = merged ? *merged : virtualScene;
   if (merged)
     resolved.snapshot = snapshotOf(scene, options.time, options.camera, options.width, options.height);
   if (options.samplesPerPixel < 2) {
     throw Error(
         "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");
   }
-  const Tracer tracer(scene, resolved);
+}
+
+LayeredImage finished(const Scene& virtualScene, const ResolvedOptions& resolved, Film& film) {
+  const CutOff cutOff = film.cutOff(resolved.options.bounces);
+  LayeredImage image = film.take();
+  image.attributes = provenance(virtualScene, resolved);
+  image.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
+  if (resolved.options.progress) warnOfCutOff(image.attributes);
+  return image;
+}
+
+}  // namespace reference
+
+LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& given) {
+  using namespace reference;
+  const PreparedScene prepared(virtualScene, given);
+  const ResolvedOptions& resolved = prepared.resolved;
+  const ReferenceOptions& options = resolved.options;
+  const Tracer tracer(prepared.scene, resolved);
   Film film(options.width, options.height, !tracer.media.empty(), hasEnvironment(virtualScene),
             options.bounceLayers);
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;
   if (options.progress) {
-    progress.emplace(fmt::format("reference of {}: {} x {} pixels, {} samples", scene.name, options.width,
-                                 options.height, options.samplesPerPixel),
+    progress.emplace(fmt::format("reference of {}: {} x {} pixels, {} samples", prepared.scene.name,
+                                 options.width, options.height, options.samplesPerPixel),
                      static_cast<std::uint64_t>(tiles.count()));
   }
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
@@ -190,13 +205,8 @@ LayeredImage renderReference(const Scene& virtualScene, const ReferenceOptions& 
     renderTile(tracer, resolved, tiles, tile, rays, film);
     if (progress) progress->advance();
   });
-  if (stopped()) throw StoppedError(fmt::format("the reference of {} was given up", scene.name));
-  const CutOff cutOff = film.cutOff(options.bounces);
-  LayeredImage image = film.take();
-  image.attributes = provenance(virtualScene, resolved);
-  image.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
-  if (options.progress) warnOfCutOff(image.attributes);
-  return image;
+  if (stopped()) throw StoppedError(fmt::format("the reference of {} was given up", prepared.scene.name));
+  return finished(virtualScene, resolved, film);
 }
 
 glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction,

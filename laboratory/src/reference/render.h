@@ -137,6 +137,21 @@ class FurtherStatistics {
     next_ = 0;
     ++count_;
   }
+  /// Adds the paths of a later block.
+  void add(const FurtherStatistics& block) {
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+      sum_[i] += block.sum_[i];
+      squares_[i] += block.squares_[i];
+    }
+    count_ += block.count_;
+  }
+  /// Calls visit(value) for each number, for reading or writing.
+  template <class Visit>
+  void forEachNumber(Visit&& visit) {
+    for (double& value : sum_) visit(value);
+    for (double& value : squares_) visit(value);
+    visit(count_);
+  }
   std::size_t channels() const { return sum_.size(); }
   float mean(std::size_t channel) const { return static_cast<float>(sum_[channel] / count_); }
   float varianceOfMean(std::size_t channel) const {
@@ -174,6 +189,25 @@ class PixelStatistics {
       middle_ += static_cast<double>(light.middle[channel]);
       late_ += static_cast<double>(light.late[channel]);
     }
+  }
+  /// Adds the paths of a later block.
+  void add(const PixelStatistics& block) {
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      sum_[i] += block.sum_[i];
+      squares_[i] += block.squares_[i];
+    }
+    middle_ += block.middle_;
+    late_ += block.late_;
+    count_ += block.count_;
+  }
+  /// Calls visit(value) for each number, for reading or writing.
+  template <class Visit>
+  void forEachNumber(Visit&& visit) {
+    for (double& value : sum_) visit(value);
+    for (double& value : squares_) visit(value);
+    visit(middle_);
+    visit(late_);
+    visit(count_);
   }
   /// Sums of the three channels' means.
   double middle() const { return middle_ / count_; }
@@ -279,11 +313,23 @@ inline CameraRay cameraRay(const CameraView& camera, const glm::vec3& direction,
   return {camera.eye + onLens, glm::normalize(camera.focus * direction - onLens)};
 }
 
-/// Paths through the pixels of one tile: addPath(statistics, further statistics, random, ray) each. The
-/// numbers of a path depend on seed, pixel and sample only.
-template <std::size_t Layers, class AddPath>
-void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
-                  AddPath&& addPath) {
+/// Samples of a pixel whose sums are made by themselves and then added in order. The sums of blocks that were
+/// rendered elsewhere therefore add up to the same bits. One block has as many as the default asks for at
+/// most.
+inline constexpr int kBlockSamples = 4096;
+inline int blocksOf(int samples) {
+  return (samples + kBlockSamples - 1) / kBlockSamples;
+}
+struct BlockRange {
+  int first = 0, end = 0;
+};
+
+/// Paths of some blocks of samples through the pixels of one tile: addPath(statistics, further statistics,
+/// random, ray) each, then write(x, y, statistics, further statistics). The numbers of a path depend on seed,
+/// pixel and sample only.
+template <std::size_t Layers, class AddPath, class Write>
+void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, BlockRange blocks,
+                  std::size_t furtherLayers, AddPath&& addPath, Write&& write) {
   const CameraView& camera = resolved.snapshot.camera;
   // The direction is affine in the image's coordinates.
   const glm::vec3 corner = camera.direction(0.0f, 0.0f);
@@ -292,31 +338,39 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
   const glm::vec3 perRow = (camera.direction(0.0f, height) - corner) / height;
   tiles.forEachPixel(tile, [&](int x, int y) {
     PixelStatistics<Layers> pixel;
-    FurtherStatistics further(film.furtherLayers());
+    FurtherStatistics further(furtherLayers);
     const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
                         static_cast<std::uint32_t>(x);
-    for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
-      RandomStream random(resolved.options.seed, stream, static_cast<std::uint32_t>(sample));
-      const float column = static_cast<float>(x) + random.uniform(),
-                  row = static_cast<float>(y) + random.uniform();
-      addPath(pixel, further, random, cameraRay(camera, corner + column * perColumn + row * perRow, random));
-      further.endPath();
+    for (int block = blocks.first; block < blocks.end; ++block) {
+      PixelStatistics<Layers> ofBlock;
+      FurtherStatistics furtherOfBlock(furtherLayers);
+      const int end = std::min(resolved.options.samplesPerPixel, (block + 1) * kBlockSamples);
+      for (int sample = block * kBlockSamples; sample < end; ++sample) {
+        RandomStream random(resolved.options.seed, stream, static_cast<std::uint32_t>(sample));
+        const float column = static_cast<float>(x) + random.uniform(),
+                    row = static_cast<float>(y) + random.uniform();
+        addPath(ofBlock, furtherOfBlock, random,
+                cameraRay(camera, corner + column * perColumn + row * perRow, random));
+        furtherOfBlock.endPath();
+      }
+      pixel.add(ofBlock);
+      further.add(furtherOfBlock);
     }
-    film.write(x, y, pixel);
-    if (further.channels() > 0) film.write(x, y, further);
+    write(x, y, pixel, further);
   });
 }
 
-template <class Rays>
-void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
-                Rays& rays, Film& film) {
+/// write(x, y, statistics, further statistics) gets each pixel's sums over some blocks of samples.
+template <class Rays, class Write>
+void renderBlocks(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
+                  BlockRange blocks, std::size_t furtherLayers, Rays& rays, Write&& write) {
   const Integrator& integrator = tracer.integrator;
   BounceSums sums(resolved.options.bounceLayers);
   BounceSums* const asked = sums.sums.empty() ? nullptr : &sums;
-  const bool environment = film.furtherLayers() > 3 * sums.sums.size();
+  const bool environment = furtherLayers > 3 * sums.sums.size();
   if (tracer.media.empty()) {
     renderPixels<kSurfaceLayers.size()>(
-        resolved, tiles, tile, film,
+        resolved, tiles, tile, blocks, furtherLayers,
         [&](auto& pixel, auto& further, RandomStream& random, const CameraRay& ray) {
           sums.clear();
           const PathSample sample = integrator.trace(rays, random, ray.origin, ray.direction, asked);
@@ -325,10 +379,11 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
           pixel.addLate(sample.lateLight);
           further.add(sums, sample.real ? glm::vec3(0.0f) : sample.direct, glm::vec3(1.0f));
           if (environment) further.add(environmentRadiancesOf(sample));
-        });
+        },
+        write);
   } else {
     renderPixels<kMediaLayers.size()>(
-        resolved, tiles, tile, film,
+        resolved, tiles, tile, blocks, furtherLayers,
         [&](auto& pixel, auto& further, RandomStream& random, const CameraRay& ray) {
           sums.clear();
           const MediaPathSample sample =
@@ -342,9 +397,34 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
                           sample.scatteredSingle,
                       sample.transmittance);
           if (environment) further.add(environmentRadiancesOf(sample.surfaces));
-        });
+        },
+        write);
   }
 }
+
+template <class Rays>
+void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
+                Rays& rays, Film& film) {
+  renderBlocks(tracer, resolved, tiles, tile, {0, blocksOf(resolved.options.samplesPerPixel)},
+               film.furtherLayers(), rays, [&](int x, int y, const auto& pixel, const auto& further) {
+                 film.write(x, y, pixel);
+                 if (further.channels() > 0) film.write(x, y, further);
+               });
+}
+
+/// A scene with everything that stands in the place of what its captures saw.
+struct PreparedScene {
+  /// Error for less than two samples per pixel, and as resolve().
+  PreparedScene(const Scene& virtualScene, const ReferenceOptions& options);
+  PreparedScene(const PreparedScene&) = delete;
+  PreparedScene& operator=(const PreparedScene&) = delete;
+
+  ResolvedOptions resolved;
+  std::optional<Scene> merged;
+  const Scene& scene;  ///< that is traced
+};
+/// The image of a film that is done, with its provenance.
+LayeredImage finished(const Scene& virtualScene, const ResolvedOptions& resolved, Film& film);
 
 /// The cut-off recorded in the attributes of a reference; none when they contain no plausible one.
 std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes);
