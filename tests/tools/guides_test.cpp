@@ -128,6 +128,9 @@ TEST_CASE("segments of elements are drawn as their guide says") {
 TEST_CASE("the commands' guide shows commands that work together") {
   follow("docs/commands.md");
 }
+TEST_CASE("shares are measured and merged as the guide to clusters says") {
+  follow("docs/cluster.md");
+}
 TEST_CASE("grids are exported and compared as their guide says") {
   follow("docs/looking_at_grids.md");
 }

@@ -16,7 +16,8 @@ struct Commands {
   /// Runs `work` when the subcommand was chosen.
   void onChosen(CLI::App* subcommand, Work work);
   Work chosen;
-  std::vector<std::string> words{};  ///< the command line without the program's name
+  std::vector<std::string> words{};          ///< the command line without the program's name, up to --slurm
+  std::vector<std::string> sbatchOptions{};  ///< what stands behind --slurm
 };
 
 void addTextCommands(Commands& commands);      // check, fmt

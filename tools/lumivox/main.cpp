@@ -1,4 +1,6 @@
 // lumivox: the command line of the laboratory.
+#include <algorithm>
+
 #include "command.h"
 #include "common/manual.h"
 #include "lumivox/plugin/technique.h"
@@ -34,7 +36,12 @@ int run(int count, char** arguments) {
   global.commandLine = asTyped("lumivox", count, arguments);
   global.addTo(app);
   Commands commands{app, global, {}};
-  commands.words.assign(arguments + 1, arguments + count);
+  // What stands behind --slurm is for sbatch.
+  const int typed =
+      static_cast<int>(std::find(arguments + 1, arguments + count, std::string("--slurm")) - arguments);
+  const int own = std::min(count, typed + 1);
+  commands.words.assign(arguments + 1, arguments + own);
+  commands.sbatchOptions.assign(arguments + own, arguments + count);
   addTextCommands(commands);
   addDescribeCommand(commands);
   addListCommand(commands);
@@ -59,7 +66,7 @@ int run(int count, char** arguments) {
   addHelpCommand(commands);
   addDescriptionOptions(app, LUMIVOX_VERSION);
 
-  if (const auto done = parseOptions(app, global, count, arguments)) return *done;
+  if (const auto done = parseOptions(app, global, own, arguments)) return *done;
   return commands.chosen();
 }
 

@@ -11,7 +11,9 @@
 #include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/reference/moments.h"
 #include "lumivox/reference/path_tracer.h"
+#include "share_options.h"
 
 namespace lumivox::command {
 namespace {
@@ -21,13 +23,48 @@ struct ReferenceCommand {
   std::string resolution;
   ReferenceOptions options;
   DisplayOptions display;
+  ShareOptions share;
+  std::vector<std::filesystem::path> parts;
   bool noCache = false, json = false;
 };
 
-int reference(ReferenceCommand command, const GlobalOptions& global) {
+constexpr const char* kPartEnding = ".part";
+
+/// Submits the parts of a reference, and a job that merges them.
+int shareReference(const ReferenceCommand& command, const Commands& commands) {
+  SharedWork work;
+  work.name = "reference";
+  work.beside = command.output;
+  work.dropped = {"-o", "--out"};
+  work.task = [](const std::string& folder, std::size_t) {
+    return fmt::format("-o {}/\"$SLURM_ARRAY_TASK_ID\"{}", folder, kPartEnding);
+  };
+  work.merge = [](const std::string& program, const std::string& typed, const std::string& folder) {
+    return fmt::format(
+        "set -- {1}/*{2}\nfor part; do shift; set -- \"$@\" --merge \"$part\"; done\n"
+        "exec {0}{3} \"$@\"\n",
+        program, folder, kPartEnding, typed);
+  };
+  const std::size_t tasks = command.share.tasks > 0 ? command.share.tasks : kTasksUnknown;
+  return submitShares(commands, command.share, work, tasks, [](const std::filesystem::path&) {}) ? kGood
+                                                                                                 : kNotGood;
+}
+
+int reference(ReferenceCommand command, const Commands& commands) {
+  const GlobalOptions& global = commands.global;
+  command.share.check(commands, "-o with a file of its own for each share", !command.output.empty());
+  const bool isPart = command.share.isShare();
+  if (isPart && !command.parts.empty())
+    throw Error("reference: --shard makes a part and --merge puts parts together; expected one of both");
   const std::string extension = command.output.extension().string();
-  const Outputs outputs = Outputs().add("-o", command.output, {".exr", ".png"});
-  outputs.check({command.scene});
+  Outputs outputs;
+  if (isPart)
+    outputs.add("-o", command.output, {kPartEnding}, Outputs::Endings::otherKindsRefused);
+  else
+    outputs.add("-o", command.output, {".exr", ".png"});
+  std::vector<std::filesystem::path> inputs = command.parts;
+  inputs.push_back(command.scene);
+  outputs.check(inputs);
   const std::optional<double> given = command.display.given();
   if (!command.resolution.empty())
     std::tie(command.options.width, command.options.height) = parseResolution(command.resolution);
@@ -36,11 +73,19 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   const Scene scene = global.loadScene(command.scene);
   scene.camera(command.options.camera);
   outputs.requireUnread();
+  if (command.share.slurm) return shareReference(command, commands);
   InterruptionNote interruption;
   interruption.say("interrupted: nothing of a reference is kept before it is done; from the start: " +
                    global.commandLine);
-  LayeredImage reference = command.options.useCache ? cachedReference(scene, command.options)
-                                                    : renderReference(scene, command.options);
+  if (isPart) {
+    const Shard shard = command.share.shard();
+    renderReferencePart(scene, command.options, shard.index, shard.count, command.output);
+    logInformation("{}: part {} of {}", command.output.string(), shard.index, shard.count);
+    return kGood;
+  }
+  LayeredImage reference = !command.parts.empty()     ? mergedReference(scene, command.options, command.parts)
+                           : command.options.useCache ? cachedReference(scene, command.options)
+                                                      : renderReference(scene, command.options);
   const ImageBuffer full = reference.layers.at("full");
   const ReferenceOptions& options = command.options;
   const double exposure = given ? *given : viewExposure(scene, options);
@@ -103,9 +148,13 @@ void addReferenceCommand(Commands& commands) {
   all->display.addTo(*command);
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
   command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");
+  addRepeatable(
+      *command, "--merge", all->parts,
+      "a part that --shard has written, of the same scene and options; may be repeated: the parts give "
+      "the image of one run, bit by bit");
+  all->share.addTo(*command, "the -o of its own, which ends in .part", /*hasStore=*/false);
   command->add_flag("--json", all->json, "print the file, its size and its layers as JSON");
-  const GlobalOptions& global = commands.global;
-  commands.onChosen(command, [=, &global] { return reference(*all, global); });
+  commands.onChosen(command, [=, &commands] { return reference(*all, commands); });
 }
 
 }  // namespace lumivox::command

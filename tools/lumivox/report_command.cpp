@@ -13,15 +13,18 @@
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/experiment/sweep.h"
 #include "lumivox/page/page.h"
 #include "lumivox/results/text.h"
 #include "measure_options.h"
+#include "share_options.h"
 
 namespace lumivox::command {
 namespace {
 
 struct ReportCommand {
   MeasureOptions measure;
+  ShareOptions share;
   std::vector<std::string> equalTimes, equalErrors;
   bool json = false, csv = false, brief = false;
 };
@@ -170,8 +173,79 @@ void printSummary(const ReportSummary& summary, const ReportOptions& options) {
   print(table + remarks(text));
 }
 
-int report(const ReportCommand& command, const GlobalOptions& global) {
+/// The points of a report as those of a sweep, with their images, for the store that the page takes them
+/// from.
+SweepOptions sharedPoints(const ReportCommand& command, const ReportOptions& options,
+                          const std::filesystem::path& page) {
+  SweepOptions points;
+  points.measure = options;
+  points.forReport = true;
+  points.shard = command.share.shard();
+  points.points = command.share.points;
+  points.into = command.share.into;
+  if (command.share.plans() && points.into.empty()) points.into = unfinishedStoreOf(page);
+  return points;
+}
+
+/// Measures a share of the points and writes no page.
+int measureShare(const ReportCommand& command, const GlobalOptions& global, const SweepOptions& points) {
+  TechniqueSet techniques = global.techniqueSet();
+  const auto device = global.openDevice();
+  ResultsStore store(command.measure.options.store);
+  const SweepSummary summary =
+      runSweep(*device, techniques, points, store,
+               [&](const std::filesystem::path& file) { return global.loadScene(file); });
+  print(fmt::format("{} measured, {} already there; {}\n", summary.measured, summary.held,
+                    store.file().string()));
+  return summary.failed == 0 ? kGood : kNotGood;
+}
+
+/// Shares the points that the page lacks: writes the shares, and submits them where that is wanted. The job
+/// after them merges them into the store beside the page and makes the page.
+int shareReport(const ReportCommand& command, const Commands& commands, SweepOptions points) {
+  const ShareOptions& share = command.share;
+  const GlobalOptions& global = commands.global;
+  TechniqueSet techniques = global.techniqueSet();
+  const auto device = global.openDevice();
+  points.points.clear();
+  const SharedPlan plan = planSweep(
+      *device, techniques, points, [&](const std::filesystem::path& file) { return global.loadScene(file); },
+      share.tasks, share.taskSeconds);
+  std::size_t missing = 0;
+  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
+  print(fmt::format("{} of {} points are missing in {}\n", missing, plan.points, points.into.string()));
+  if (plan.shares.empty()) return kGood;
+  if (!share.slurm) {
+    plan.write(share.points);
+    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
+    return kGood;
+  }
+  std::error_code ignored;
+  const std::string into = inSingleQuotes(std::filesystem::absolute(points.into, ignored).string());
+  const bool mixed = holdsOtherVersions(ResultsStore(points.into), techniques);
+  SharedWork work;
+  work.name = "report";
+  work.beside = points.into;
+  work.exclusive = work.mergeExclusive = true;
+  work.dropped = {"--store", "-o", "--out"};
+  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
+  work.merge = [&](const std::string& program, const std::string& typed, const std::string& folder) {
+    return fmt::format("{} || exit\nexec {}{}\n", mergeOfTasks(program, into, mixed, folder), program, typed);
+  };
+  return submitShares(commands, share, work, plan.shares.size(),
+                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
+             ? kGood
+             : kNotGood;
+}
+
+int report(const ReportCommand& command, const Commands& commands) {
+  const GlobalOptions& global = commands.global;
+  command.share.check(commands, "--store with a store of its own for each share",
+                      !command.measure.options.store.empty());
   ReportOptions options = command.measure.asked(global);
+  if ((command.share.isShare() || command.share.plans()) && options.budgetSeconds > 0.0)
+    throw Error(
+        "report --budget ends a report early; a share measures all of its points: expected one of both");
   for (const std::string& text : command.equalTimes)
     options.equalTimesMs.push_back(1000.0 * secondsOf("--equal-time", text));
   for (const std::string& text : command.equalErrors)
@@ -188,6 +262,10 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   outputs.check(inputs);
   options.allRead = [&] { outputs.requireUnread(); };
   options.output = files.page;
+  if (command.share.isShare())
+    return measureShare(command, global, sharedPoints(command, options, files.page));
+  if (command.share.plans())
+    return shareReport(command, commands, sharedPoints(command, options, files.page));
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
   const ReportSummary summary = makeReport(
@@ -235,8 +313,8 @@ void addReportCommand(Commands& commands) {
       "hold everything");
   auto* json = command->add_flag("--json", all->json, "print the JSON in place of the table");
   command->add_flag("--csv", all->csv, "print the CSV in place of the table")->excludes(json);
-  const GlobalOptions& global = commands.global;
-  commands.onChosen(command, [=, &global] { return report(*all, global); });
+  all->share.addTo(*command, "the --store of its own, without a page", /*hasStore=*/true);
+  commands.onChosen(command, [=, &commands] { return report(*all, commands); });
 }
 
 }  // namespace lumivox::command

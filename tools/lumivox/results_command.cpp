@@ -31,7 +31,7 @@ struct ResultsCommand {
   std::string outcome;
   std::string format = "csv";
   std::vector<std::filesystem::path> others;
-  bool all = false, dryRun = false, json = false;
+  bool all = false, dryRun = false, json = false, mixed = false;
   std::string component, metric = kDefaultMetric, against;  ///< empty: the default
   std::vector<std::string> frameTimes, errors;
 
@@ -228,12 +228,11 @@ std::string countText(const MergeCount& count, const std::filesystem::path& file
 }
 
 int mergeResults(const ResultsCommand& command) {
-  // All are opened before the first is merged, so that one that cannot be read leaves the store unchanged.
-  std::vector<ResultsStore> others;
-  for (const std::filesystem::path& file : command.others)
-    others.emplace_back(file, ResultsStore::Mode::read);
+  // The first is opened before the store is made.
+  const ResultsStore first(command.others.front(), ResultsStore::Mode::read);
   ResultsStore store(command.file());
-  for (const ResultsStore& other : others) print(countText(store.merge(other), other.file()));
+  const std::vector<MergeCount> counts = store.merge(command.others, command.mixed);
+  for (std::size_t i = 0; i < counts.size(); ++i) print(countText(counts[i], command.others[i]));
   return kGood;
 }
 
@@ -440,7 +439,9 @@ void addResultsCommands(Commands& commands) {
       add("merge", "copies the runs, stress cells and peak rates that this store lacks from other stores",
           mergeResults);
   command->addStoreTo(*merge);
-  merge->add_option("STORE", command->others, "the other stores")->required();
+  merge->add_option("STORE", command->others, "the other stores; their order does not matter")->required();
+  merge->add_flag("--mixed", command->mixed,
+                  "also of different versions of Lumivox or of a technique (default: refused)");
   auto* import =
       add("import", "copies the runs, stress cells and peak rates of stores that an earlier version wrote",
           importResults);

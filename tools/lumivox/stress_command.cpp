@@ -13,11 +13,13 @@
 #include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/experiment/sweep.h"
 #include "lumivox/page/stress_page.h"
 #include "lumivox/results/stress_cells.h"
 #include "lumivox/stress/stress.h"
 #include "measure_options.h"
 #include "results_text.h"
+#include "share_options.h"
 #include "stress_text.h"
 
 namespace lumivox::command {
@@ -25,6 +27,7 @@ namespace {
 
 struct StressCommand {
   StressOptions options;
+  ShareOptions share;
   bool json = false, list = false, worker = false;
   std::uint64_t workerMemory = 0;
   std::filesystem::path from;
@@ -102,10 +105,51 @@ int tellStored(const StressCommand& command, const GlobalOptions& global) {
   return tell(summary, command.json);
 }
 
-int stress(const StressCommand& command, const GlobalOptions& global) {
+/// Shares the cells that the store lacks: writes the shares, and submits them where that is wanted.
+int shareStress(const StressCommand& command, const Commands& commands, TechniqueSet& techniques,
+                const StressOptions& options) {
+  const ShareOptions& share = command.share;
+  const SharedPlan plan = planStress(options, techniques, share.tasks, share.taskSeconds);
+  std::size_t missing = 0;
+  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
+  print(fmt::format("{} of {} cells are missing in {}\n", missing, plan.points, options.into.string()));
+  if (plan.shares.empty()) return kGood;
+  if (!share.slurm) {
+    plan.write(share.points);
+    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
+    return kGood;
+  }
+  std::error_code ignored;
+  const std::string into = inSingleQuotes(std::filesystem::absolute(options.into, ignored).string());
+  const bool mixed = holdsOtherVersions(ResultsStore(options.into), techniques);
+  SharedWork work;
+  work.name = "stress";
+  work.beside = options.into;
+  work.dropped = {"--store", "-o", "--out"};
+  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
+  work.merge = [&](const std::string& program, const std::string&, const std::string& folder) {
+    const std::string page = options.output.empty()
+                                 ? std::string()
+                                 : fmt::format("exec {} stress --from {} -o {}\n", program, into,
+                                               inSingleQuotes(options.output.string()));
+    return mergeOfTasks(program, into, mixed, folder) + " || exit\n" + page;
+  };
+  return submitShares(commands, share, work, plan.shares.size(),
+                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
+             ? kGood
+             : kNotGood;
+}
+
+int stress(const StressCommand& command, const Commands& commands) {
+  const GlobalOptions& global = commands.global;
+  command.share.check(commands, "--store with a store of its own for each share",
+                      !command.options.store.empty());
   if (!command.from.empty()) return tellStored(command, global);
   TechniqueSet techniques = global.techniqueSet();
   StressOptions options = command.options;
+  options.shard = command.share.shard();
+  options.points = command.share.points;
+  options.into = command.share.into;
   options.program = workerProgram(global);
   options.repeatArguments = repeatArguments(global);
   options.commandLine = global.commandLine;
@@ -121,6 +165,13 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
     return kGood;
   }
   if (command.list) return listCases(options, techniques, command.json);
+  if (command.share.plans()) {
+    if (options.into.empty()) options.into = options.store;
+    if (options.into.empty())
+      throw Error("stress --slurm: expected --store with the store that the shares are merged into");
+    options.points.clear();
+    return shareStress(command, commands, techniques, options);
+  }
   std::vector<std::filesystem::path> inputs = options.pipelines;
   inputs.push_back(options.store);
   checkOutput(options.output, inputs);
@@ -141,7 +192,10 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
           : fmt::format(
                 "interrupted: {} keeps the cells that have run; results list --stress shows them; the whole battery again: {}",
                 options.store.string(), global.commandLine));
-  return tell(runStress(options, techniques), command.json);
+  const StressSummary summary = runStress(options, techniques);
+  if (summary.leftOut > 0)
+    logInformation("{} cells are held already or left to other shares", summary.leftOut);
+  return tell(summary, command.json);
 }
 
 }  // namespace
@@ -178,8 +232,8 @@ void addStressCommand(Commands& commands) {
   command->add_flag("--json", all->json, "print JSON in place of the tables");
   command->add_flag("--worker", all->worker)->group("");  // for the battery itself
   command->add_option("--worker-memory", all->workerMemory)->group("");
-  const GlobalOptions& global = commands.global;
-  commands.onChosen(command, [=, &global] { return stress(*all, global); });
+  all->share.addTo(*command, "the --store of its own", /*hasStore=*/true);
+  commands.onChosen(command, [=, &commands] { return stress(*all, commands); });
 }
 
 }  // namespace lumivox::command

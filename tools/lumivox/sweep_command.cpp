@@ -11,16 +11,57 @@
 #include "lumivox/results/json.h"
 #include "measure_options.h"
 #include "results_text.h"
+#include "share_options.h"
 
 namespace lumivox::command {
 namespace {
 
 struct SweepCommand {
   MeasureOptions measure;
+  ShareOptions share;
   bool plan = false, retryFailed = false, json = false, csv = false;
 };
 
-int sweep(const SweepCommand& command, const GlobalOptions& global) {
+/// Shares the points that the store lacks: writes the shares, and submits them where that is wanted.
+int shareSweep(const SweepCommand& command, const Commands& commands, gpu::Device& device,
+               TechniqueSet& techniques, const SweepOptions& options) {
+  const ShareOptions& share = command.share;
+  const SharedPlan plan = planSweep(
+      device, techniques, options,
+      [&](const std::filesystem::path& scene) { return commands.global.loadScene(scene); }, share.tasks,
+      share.taskSeconds);
+  std::size_t missing = 0;
+  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
+  print(fmt::format("{} of {} points are missing in {}\n", missing, plan.points, options.into.string()));
+  if (command.plan) print(fmt::format("{} tasks\n", plan.shares.size()));
+  if (command.plan || plan.shares.empty()) return kGood;
+  if (!share.slurm) {
+    plan.write(share.points);
+    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
+    return kGood;
+  }
+  std::error_code ignored;
+  const std::string into = inSingleQuotes(std::filesystem::absolute(options.into, ignored).string());
+  const bool mixed = holdsOtherVersions(ResultsStore(options.into), techniques);
+  SharedWork work;
+  work.name = "sweep";
+  work.beside = options.into;
+  work.exclusive = true;
+  work.dropped = {"--store"};
+  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
+  work.merge = [&](const std::string& program, const std::string&, const std::string& folder) {
+    return "exec " + mergeOfTasks(program, into, mixed, folder) + "\n";
+  };
+  return submitShares(commands, share, work, plan.shares.size(),
+                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
+             ? kGood
+             : kNotGood;
+}
+
+int sweep(const SweepCommand& command, const Commands& commands) {
+  const GlobalOptions& global = commands.global;
+  command.share.check(commands, "--store with a store of its own for each share",
+                      !command.measure.options.store.empty());
   SweepOptions options;
   options.measure = command.measure.asked(global);
   // Sweep texts are among the positional texts: they are moved out of the scenes.
@@ -33,9 +74,17 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
   options.planOnly = command.plan;
   const std::filesystem::path file =
       options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store;
-  ResultsStore store(file);
+  options.shard = command.share.shard();
+  options.into = command.share.into;
+  options.points = command.share.points;
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
+  if (command.share.plans()) {
+    if (options.into.empty()) options.into = file;
+    options.points.clear();
+    return shareSweep(command, commands, *device, techniques, options);
+  }
+  ResultsStore store(file);
   const SweepSummary summary =
       runSweep(*device, techniques, options, store,
                [&](const std::filesystem::path& scene) { return global.loadScene(scene); });
@@ -56,6 +105,8 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
     for (const std::string& missing : summary.missing) below += "not measured yet: " + missing + "\n";
     for (const std::string& note : summary.notes) below += "note: " + note + "\n";
     for (const std::string& unsuited : summary.unsuited) below += "not run: " + unsuited + "\n";
+    if (summary.leftToOthers > 0)
+      below += fmt::format("left to other shares: {} points\n", summary.leftToOthers);
     const std::string done =
         options.planOnly
             ? fmt::format("{} points are missing", summary.missing.size())
@@ -83,8 +134,8 @@ void addSweepCommand(Commands& commands) {
   command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
   auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");
   command->add_flag("--csv", all->csv, "print the runs as CSV in place of the table")->excludes(json);
-  const GlobalOptions& global = commands.global;
-  commands.onChosen(command, [=, &global] { return sweep(*all, global); });
+  all->share.addTo(*command, "the --store of its own", /*hasStore=*/true);
+  commands.onChosen(command, [=, &commands] { return sweep(*all, commands); });
 }
 
 }  // namespace lumivox::command

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "base/child.h"
@@ -14,6 +15,7 @@
 #include "experiment/costs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/hash.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/page/stress_page.h"
@@ -26,6 +28,7 @@ namespace lumivox {
 namespace {
 
 using namespace stress;
+using experiment::Costs;
 using Clock = std::chrono::steady_clock;
 
 // Time limit of one cell, s: ten times that of the slowest on an idle machine.
@@ -36,20 +39,45 @@ constexpr double kStartLimit = 60.0;  // s
 /// Starts of workers that may fail in a row before the battery gives up.
 constexpr int kFailedStarts = 3;
 
+CellRequest requestFor(const StressJob& job, const StressOptions& options) {
+  CellRequest request{job.pipeline, job.info.name, options.quick, {}};
+  if (!options.output.empty())
+    request.image =
+        options.output / "images" / (job.pipeline.stem().string() + "__" + job.info.name + ".png");
+  return request;
+}
+
+/// Of what positions in a plan mean.
+std::string hashOf(const std::vector<StressJob>& jobs) {
+  Hasher hasher;
+  for (const StressJob& job : jobs) hasher.add(job.pipeline.string()).add(job.info.name);
+  return hasher.finish().text();
+}
+
+/// The jobs of the wanted share.
+std::vector<StressJob> sharedJobs(const StressOptions& options, std::vector<StressJob> jobs) {
+  std::vector<StressJob> share;
+  for (const std::size_t position : positionsOf(options.shard, options.points, hashOf(jobs), jobs.size()))
+    share.push_back(std::move(jobs[position]));
+  return share;
+}
+
 class Battery {
  public:
-  Battery(const StressOptions& options, TechniqueSource& techniques, ResultsStore* store)
+  Battery(const StressOptions& options, TechniqueSource& techniques, ResultsStore* store, ResultsStore* into)
       : options_(options),
         store_(store),
-        jobs_(plannedStress(options, techniques)),
+        into_(into),
+        jobs_(sharedJobs(options, plannedStress(options, techniques))),
         cells_(jobs_.size()),
         isDone_(jobs_.size()),
+        isLeftOut_(jobs_.size()),
         limit_(options.timeLimit > 0.0 ? options.timeLimit
                : options.quick         ? kQuickLimit
                                        : kFullLimit) {
     // Each cell reports its dependencies; a worker that dies cannot.
     for (const StressJob& job : jobs_) {
-      requests_.push_back(requestFor(job));
+      requests_.push_back(requestFor(job, options));
       cells_[requests_.size() - 1] =
           cellBefore(requests_.back(), job.info.family, techniques, options.repeatArguments);
     }
@@ -73,18 +101,16 @@ class Battery {
           [this, child = i == 0 ? first.release() : nullptr] { work(std::unique_ptr<Child>(child)); });
     for (std::thread& thread : threads) thread.join();
     if (failure_) std::rethrow_exception(failure_);
-    return std::move(cells_);
+    std::vector<StressCell> cells;
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      if (!isLeftOut_[i]) cells.push_back(std::move(cells_[i]));
+    return cells;
+  }
+  std::size_t leftOut() const {
+    return static_cast<std::size_t>(std::count(isLeftOut_.begin(), isLeftOut_.end(), true));
   }
 
  private:
-  CellRequest requestFor(const StressJob& job) const {
-    CellRequest request{job.pipeline, job.info.name, options_.quick, {}};
-    if (!options_.output.empty())
-      request.image =
-          options_.output / "images" / (job.pipeline.stem().string() + "__" + job.info.name + ".png");
-    return request;
-  }
-
   std::size_t processorsWanted() const {
     const std::size_t wanted = options_.workers > 0 ? static_cast<std::size_t>(options_.workers)
                                                     : std::max(1u, std::thread::hardware_concurrency());
@@ -112,7 +138,25 @@ class Battery {
   /// The next job, pipeline by pipeline; past the end where none is left.
   std::size_t take() {
     const std::lock_guard lock(mutex_);
-    return failure_ ? jobs_.size() : next_++;
+    if (failure_) return jobs_.size();
+    while (next_ < jobs_.size() && !isOurs(next_)) {
+      isLeftOut_[next_] = isDone_[next_] = true;
+      ++done_;
+      ++next_;
+    }
+    return next_ < jobs_.size() ? next_++ : next_;
+  }
+
+  /// Whether a cell is to be run here; if so, it is claimed.
+  bool isOurs(std::size_t job) {
+    if (!isShare()) return true;
+    const std::string key = cells_[job].key();
+    if (store_->hasCell(key) || (into_ != nullptr && into_->hasCell(key))) return false;
+    return into_ == nullptr || into_->claimFor(store_->file(), {key}).front();
+  }
+
+  bool isShare() const {
+    return store_ != nullptr && (!options_.shard.isWhole() || !options_.points.empty());
   }
 
   void work(std::unique_ptr<Child> child) {
@@ -205,6 +249,7 @@ class Battery {
   void finished(std::size_t job, bool wasRun) {
     const std::lock_guard lock(mutex_);
     if (store_ != nullptr && wasRun) store_->add(std::vector<StressCell>{cells_[job]});
+    if (into_ != nullptr && wasRun) into_->deliver(store_->file(), {cells_[job].key()});
     ++done_;
     isDone_[job] = true;
     if (cells_[job].seconds > 0.0)
@@ -226,10 +271,11 @@ class Battery {
 
   const StressOptions& options_;
   ResultsStore* store_;
+  ResultsStore* into_;
   const std::vector<StressJob> jobs_;
   std::vector<CellRequest> requests_;
   std::vector<StressCell> cells_;
-  std::vector<bool> isDone_;
+  std::vector<bool> isDone_, isLeftOut_;
   const double limit_;
   const std::uint64_t memoryAtStart_ = sharedMemoryLeft();  // each worker has an address space of its own
   std::size_t workers_ = 1;
@@ -237,7 +283,7 @@ class Battery {
   std::atomic<int> failedStarts_ = 0;
   std::mutex mutex_;
   std::size_t next_ = 0, done_ = 0;
-  experiment::Costs costs_;
+  Costs costs_;
   double seconds_ = 0.0;  ///< of all cells that were run
   std::exception_ptr failure_;
 };
@@ -254,10 +300,35 @@ StressSummary runStress(const StressOptions& options, TechniqueSource& technique
   std::optional<ResultsStore> store;
   if (!options.store.empty()) store.emplace(options.store);
   StressSummary summary;
-  summary.cells = Battery(options, techniques, store ? &*store : nullptr).run();
+  std::optional<ResultsStore> into;
+  if (!options.into.empty()) into.emplace(options.into);
+  Battery battery(options, techniques, store ? &*store : nullptr, into ? &*into : nullptr);
+  summary.cells = battery.run();
+  summary.leftOut = battery.leftOut();
   if (!options.output.empty())
     summary.page = writeStressPage(options.output, summary.cells, options.commandLine);
   return summary;
+}
+
+SharedPlan planStress(const StressOptions& options, TechniqueSource& techniques, std::size_t tasks,
+                      double taskSeconds) {
+  const std::vector<StressJob> jobs = plannedStress(options, techniques);
+  std::set<std::string> held;
+  Costs costs;
+  for (const StressCell& cell : ResultsStore(options.into).stressCells()) {
+    held.insert(cell.anywhere());
+    if (cell.seconds > 0.0) costs.add(cell.pipeline, cell.name, 1.0, cell.seconds);
+  }
+  std::vector<std::size_t> missing;
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const StressCell cell =
+        cellBefore(requestFor(jobs[i], options), jobs[i].info.family, techniques, options.repeatArguments);
+    if (held.count(cell.anywhere()) > 0) continue;
+    missing.push_back(i);
+    seconds.push_back(costs.expected(jobs[i].pipeline.string(), jobs[i].info.name, 1.0).value_or(0.0));
+  }
+  return sharedPlan(hashOf(jobs), jobs.size(), missing, seconds, tasks, taskSeconds);
 }
 
 }  // namespace lumivox

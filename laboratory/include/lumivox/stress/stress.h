@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/experiment/shard.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/results/store.h"
 
@@ -41,6 +42,13 @@ struct StressOptions {
   std::uint64_t memoryBytes = 0;
   std::filesystem::path output;  ///< folder for the page and the images; empty: neither
   std::filesystem::path store;   ///< results store; empty: none
+  /// Run this share of the plan alone: successive cells of it, or what `points` says; cells that the store
+  /// holds are not run again.
+  Shard shard = {};
+  std::filesystem::path points;  ///< a SharedPlan (experiment/shard.h) of the same battery; empty: none
+  /// The store that shares are merged into: cells that it holds, or that another share has claimed there, are
+  /// left out. Empty: none.
+  std::filesystem::path into;
   /// That runs one worker: the words of its command line, which ends up in serveStress(). Among several,
   /// `--worker-memory BYTES` follows them.
   std::vector<std::string> program;
@@ -55,8 +63,13 @@ struct StressOptions {
 /// wrong pipeline text.
 std::vector<StressJob> plannedStress(const StressOptions& options, TechniqueSource& techniques);
 
+/// The shares of the cells that options.into does not hold, whatever machine ran them there, as planSweep().
+SharedPlan planStress(const StressOptions& options, TechniqueSource& techniques, std::size_t tasks,
+                      double taskSeconds);
+
 struct StressSummary {
-  std::vector<StressCell> cells;  ///< in the order of the plan
+  std::vector<StressCell> cells;  ///< in the order of the plan, without those left out
+  std::size_t leftOut = 0;        ///< of a share: held already, or left to other shares
   std::filesystem::path page;     ///< empty: none was asked for
   /// No cell is broken: NaN, infinite, crashed or hung.
   bool sound() const;
