@@ -26,7 +26,8 @@ Database::Database(const std::filesystem::path& file, bool write) : file_(file) 
       access(file.c_str(), W_OK) == 0)
     Database(file, true).pragma("user_version");
   sqlite3* handle = nullptr;
-  const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+  const int flags =
+      SQLITE_OPEN_NOMUTEX | (write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
   const int status = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
   if (status != SQLITE_OK) fail();
@@ -127,9 +128,52 @@ void Statement::bindOne(int index, double number) {
 }
 
 void Statement::bindColumn(int index, const Statement& from, int column) {
-  if (sqlite3_bind_value(statement_.get(), index, sqlite3_column_value(from.statement_.get(), column)) !=
-      SQLITE_OK)
-    database_.fail();
+  sqlite3_stmt* const to = statement_.get();
+  sqlite3_stmt* const row = from.statement_.get();
+  int status = SQLITE_OK;
+  switch (sqlite3_column_type(row, column)) {
+    case SQLITE_INTEGER:
+      status = sqlite3_bind_int64(to, index, sqlite3_column_int64(row, column));
+      break;
+    case SQLITE_FLOAT:
+      status = sqlite3_bind_double(to, index, sqlite3_column_double(row, column));
+      break;
+    case SQLITE_NULL:
+      status = sqlite3_bind_null(to, index);
+      break;
+    case SQLITE_BLOB:
+      status = sqlite3_bind_blob(to, index, sqlite3_column_blob(row, column),
+                                 sqlite3_column_bytes(row, column), SQLITE_STATIC);
+      break;
+    default: {
+      const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+      status = sqlite3_bind_text(to, index, text, sqlite3_column_bytes(row, column), SQLITE_STATIC);
+    }
+  }
+  if (status != SQLITE_OK) database_.fail();
+}
+
+void Statement::giveColumn(sqlite3_context* to, int column) const {
+  sqlite3_stmt* const row = statement_.get();
+  switch (sqlite3_column_type(row, column)) {
+    case SQLITE_INTEGER:
+      sqlite3_result_int64(to, sqlite3_column_int64(row, column));
+      break;
+    case SQLITE_FLOAT:
+      sqlite3_result_double(to, sqlite3_column_double(row, column));
+      break;
+    case SQLITE_NULL:
+      sqlite3_result_null(to);
+      break;
+    case SQLITE_BLOB:
+      sqlite3_result_blob(to, sqlite3_column_blob(row, column), sqlite3_column_bytes(row, column),
+                          SQLITE_STATIC);
+      break;
+    default: {
+      const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+      sqlite3_result_text(to, text, sqlite3_column_bytes(row, column), SQLITE_STATIC);
+    }
+  }
 }
 
 void Statement::bindInteger(int index, std::int64_t value) {

@@ -44,12 +44,15 @@ class Statement {
   double number(int column) const;
   std::string text(int column) const;
   std::string bytes(int column) const;
+  /// Hands a column of the row to a function of SQL or a table of one's own, as it is. Texts are not copied:
+  /// the row has to stay until they are used.
+  void giveColumn(sqlite3_context* to, int column) const;
   /// Throws Error for an unexpected value.
   [[noreturn]] void fail(const std::string& why) const;
 
   /// Binds one value; indices start at 1.
   void bindOne(int index, const Blob& blob);
-  /// The value of a column of another statement's row, as it is.
+  /// The value of a column of another statement's row, as it is; the row has to stay until this one has run.
   void bindColumn(int index, const Statement& from, int column);
   /// Binds lists and objects as their text.
   void bindJson(int index, const nlohmann::ordered_json& json);
