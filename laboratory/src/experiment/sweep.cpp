@@ -150,7 +150,10 @@ class SweepPlan {
     for (const PlannedPoint& point : points) {
       if (point.seeds.empty() || options_.forReport) plan.points.push_back({loaded, point, {}});
       if (options_.forReport) continue;
-      for (const std::uint64_t seed : point.seeds) plan.points.push_back({loaded, point, seed});
+      // Each seed's point does without the list of all.
+      PlannedPoint one = point;
+      one.seeds.clear();
+      for (const std::uint64_t seed : point.seeds) plan.points.push_back({loaded, one, seed});
     }
   }
 
