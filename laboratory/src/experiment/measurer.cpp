@@ -144,8 +144,9 @@ std::vector<bool> Measurer::held(const std::vector<WantedPoint>& points, bool re
   return result;
 }
 
-void Measurer::shareWith(ResultsStore& into) {
-  into_ = &into;
+void Measurer::measureShare(ResultsStore* into) {
+  into_ = into;
+  estimates_ = false;
 }
 
 Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers) {
@@ -467,7 +468,7 @@ void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, 
   underWay_.clear();
   untimedDone_ = 0;
   for (const Entry& entry : batch) underWay_.push_back(entry.wanted);
-  if (done) lookAt(underWay_);
+  if (done && estimates_) lookAt(underWay_);
   for (Entry& entry : batch) {
     const MachineLock working(MachineLock::For::work);
     const Clock::time_point start = Clock::now();

@@ -48,9 +48,10 @@ class Measurer {
   std::string key(const WantedPoint& point) const;
   std::string text(const WantedPoint& point) const;
 
-  /// The store is a share of `into`, into which it will be merged: what is there is not measured again, and
+  /// The store is a share. Nobody watches it, so that no frame is rendered to learn what the rest takes.
+  /// Unless null, `into` is the store that it will be merged into: what is there is not measured again, and
   /// what is claimed there for other stores is left to them.
-  void shareWith(ResultsStore& into);
+  void measureShare(ResultsStore* into);
   /// Of the points of measure(), those left to other shares.
   std::size_t leftToOthers() const { return leftToOthers_; }
 
@@ -147,6 +148,7 @@ class Measurer {
   const ReportOptions& options_;
   ResultsStore& store_;
   ResultsStore* into_ = nullptr;
+  bool estimates_ = true;
   std::size_t leftToOthers_ = 0;
   Scene scene_;
   std::string sceneShown_;

@@ -189,6 +189,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   if (!options.shard.isWhole() && !options.planOnly) store.releaseElsewhere();
   const std::size_t total = plan.findMissing(summary, into ? &*into : nullptr);
 
+  const bool isShare = !options.shard.isWhole() || into || !options.points.empty();
   std::size_t finished = 0;
   ScenePlan* first = nullptr;
   const auto done = [&](std::size_t measured, std::size_t byOthers) {
@@ -196,6 +197,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     summary.held += byOthers;
     finished += measured + byOthers;
     if (!measure.progress) return;
+    if (isShare) return measure.progress(finished, total, kUnknownSeconds);
     double left = first->measurer->controlSeconds(first->missing);
     for (const ScenePlan& scene : plan.scenes())
       if (!scene.missing.empty())
@@ -205,16 +207,18 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   for (ScenePlan& scene : plan.scenes()) {
     if (options.planOnly) break;
     if (first == nullptr && !scene.missing.empty()) first = &scene;
-    if (into) scene.measurer->shareWith(*into);
-    scene.measurer->lookAt(scene.missing);
+    if (isShare)
+      scene.measurer->measureShare(into ? &*into : nullptr);
+    else
+      scene.measurer->lookAt(scene.missing);
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
     summary.leftToOthers += scene.measurer->leftToOthers();
   }
-  // The first points are timed again at the end, to learn how far repeated times differ on this machine. A
-  // share is short.
-  if (first != nullptr && summary.measured > 0)
-    first->measurer->control(first->missing, options.shard.isWhole() ? Measurer::kBatch : 1);
+  // The first points are timed again at the end, to learn how far repeated times differ on this machine. Of
+  // the shares one does so for all.
+  if (first != nullptr && summary.measured > 0 && options.shard.index == 1)
+    first->measurer->control(first->missing, isShare ? 1 : Measurer::kBatch);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));
   return summary;
