@@ -12,12 +12,15 @@
 #pragma lumivox axis BIT_RULE hierarchy stacks plain printed
 #ifndef LUMIVOX_BIT_GRID
 #define LUMIVOX_BIT_GRID
+#ifndef PLANES
+#define PLANES 0  // 1: rays end at the surface within an occupied voxel, or pass it (common/voxel_planes.glsl); not with BIT_RULE printed
+#endif
 
 layout(binding = 8) uniform usampler2DArray bitStacks;
 
 struct BitHit {
   ivec3 voxel;
-  float t;      // where the ray enters the voxel; 0 if the ray begins in it
+  float t;      // where the ray enters the voxel; 0 if the ray begins in it. With PLANES, where it ends in it
   bool found;
   int fetches;  // texels of the stacks that were read
 };
@@ -63,6 +66,11 @@ float leavesGrid() {
     if (bitMoves[axis]) t = min(t, crossingAt(axis, bitDirection[axis] > 0.0 ? bitVoxels[axis] : 0));
   return t;
 }
+
+#if PLANES
+// Where the ray that is followed ends in an occupied voxel that it enters at a t; kNever: it passes.
+float stopIn(ivec3 voxel, float enters);
+#endif
 
 // The first voxel of the grid that a ray enters, and the t of entry; false if the ray misses the grid.
 bool enterBits(vec3 origin, vec3 direction, ivec3 voxels, out ivec3 voxel, out float t) {
@@ -131,7 +139,14 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
   while (t <= reach) {
     ++hit.fetches;
     uvec4 stack = texelFetch(bitStacks, ivec3(voxel.xy, voxel.z / kStackBits), 0);
+#if PLANES
+    if ((stack[voxel.z >> 5 & 3] >> (voxel.z & 31) & 1u) != 0u) {
+      float end = stopIn(voxel, t);
+      if (!isinf(end)) return BitHit(voxel, end, end <= reach, hit.fetches);
+    }
+#else
     if ((stack[voxel.z >> 5 & 3] >> (voxel.z & 31) & 1u) != 0u) return BitHit(voxel, t, true, hit.fetches);
+#endif
     int axis = 0;
     float next = kNever;
     for (int i = 0; i < 3; ++i) {
@@ -229,7 +244,18 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
       }
       if (found != voxel.z) t = crossingAt(2, bitDirection.z > 0.0 ? found : found + 1);
       if (t > reach) break;
+#if PLANES
+      float end = stopIn(ivec3(voxel.xy, found), t);
+      if (!isinf(end)) return BitHit(ivec3(voxel.xy, found), end, end <= reach, hit.fetches);
+      if (found != clamp(next, 0, voxels.z - 1)) {
+        // On to the next voxel of the column; after its last one, out of the column.
+        t = crossingAt(2, bitDirection.z > 0.0 ? found + 1 : found);
+        voxel.z = found + (bitDirection.z > 0.0 ? 1 : -1);
+        continue;
+      }
+#else
       return BitHit(ivec3(voxel.xy, found), t, true, hit.fetches);
+#endif
     }
     if (!leaves || next < 0 || next >= voxels.z) break;
     t = leaving;

@@ -9,12 +9,17 @@
 #pragma lumivox axis FETCHES 0 1
 #pragma lumivox axis MAP_LOBES 0 1
 #pragma lumivox require !MAP_LOBES || RADIANCE == map
+#pragma lumivox axis PLANES 0 1
+#pragma lumivox require !PLANES || BIT_RULE != printed
 #pragma lumivox require ARRIVING || OCCLUSION || FETCHES
 #pragma lumivox require ARRIVING || RADIANCE == none
 #include "common/cones.glsl"
 #include "common/environment.glsl"
 #include "common/random.glsl"
 #include "common/bit_rays.glsl"
+#if PLANES
+#include "common/voxel_planes.glsl"
+#endif
 #if RADIANCE == RADIANCE_MAP
 #include "common/back_projection.glsl"
 #endif
@@ -104,10 +109,14 @@ vec3 startOf(vec3 posWorld, vec3 geometricNormal) {
 vec3 receiver;  // posWorld of the surface that gathers
 
 vec3 hitPointOf(BitHit hit) {
+#if PLANES
+  return bitOrigin + hit.t * bitDirection;
+#else
   vec3 centre = vec3(hit.voxel) + 0.5, entry = bitOrigin + hit.t * bitDirection;
   if (hitPoint == kHitMiddle) return bitOrigin + 0.5 * (hit.t + max(leavesVoxel(hit.voxel), hit.t)) * bitDirection;
   if (hitPoint == kHitEntry) return entry;
   return hitPoint == kHitCentre ? centre : vec3(entry.xy, centre.z);
+#endif
 }
 
 vec3 radianceOf(BitHit hit) {

@@ -1,6 +1,11 @@
 #version 450
 // One ray per pixel through the bits, for tests and measurements.
+#pragma lumivox axis PLANES 0 1
+#pragma lumivox require !PLANES || BIT_RULE != printed
 #include "common/bit_rays.glsl"
+#if PLANES
+#include "common/voxel_planes.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

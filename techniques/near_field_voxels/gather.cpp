@@ -12,6 +12,7 @@
 #include "lumivox/toolkit/loop_limit.h"
 #include "near_field_voxels_shaders.h"
 #include "passes.h"
+#include "planes.h"
 
 namespace lumivox::near_field_voxels {
 
@@ -86,6 +87,7 @@ class GatherPass : public Pass {
       this, "hit", HitPoint::middle,
       "point of a hit that is projected into 'map'; middle: midway through the voxel along the ray; entry: where the ray enters; centre: the voxel's centre; printed: x and y of the entry, z of the centre",
       published(HitPoint::printed)};
+  RayStop stop{this};
   BackProjection projection{this};
   PublishedForm asPublished{
       this,
@@ -103,9 +105,13 @@ class GatherPass : public Pass {
   }
   bool uses(const InBase& input) const override {
     if (&input == &map) return arriving.wanted() && radiance == Radiance::map;
+    if (stop.isInput(input)) return stop.atPlanes();
     return &input != &voxels || (arriving.wanted() && radiance == Radiance::voxels);
   }
-  std::string checkParameters() const override { return projection.check(); }
+  std::string checkParameters() const override {
+    const std::string ofStop = stop.check(method);
+    return ofStop.empty() ? projection.check() : ofStop;
+  }
 
   bool readsMap() const { return radiance == Radiance::map && map.present() && map->lightCount > 0; }
 
@@ -194,6 +200,7 @@ class GatherPass : public Pass {
                                   .occlusion = occlusion.wanted(),
                                   .fetches = fetches.wanted(),
                                   .mapLobes = fromMap && map->specular != nullptr,
+                                  .planes = stop.atPlanes(),
                                   .bitRule = method.axis()};
     const shader::BoundProgram& program = frame.program(variant, constantsOf(frame));
     // Read only after earlier frames, but always bound.
@@ -203,6 +210,7 @@ class GatherPass : public Pass {
     shader::BindingSet bound{GBufferBinding(*gbuffer),
                              EnvironmentBinding(frame),
                              method.binding(frame, *bits),
+                             stop.binding(frame, *bits, "near_field_voxels.gather"),
                              gather::arrivingImage(arrives),
                              gather::lightSum(light.current),
                              gather::lostSum(lost.current),
@@ -228,7 +236,7 @@ class GatherPass : public Pass {
   /// drivers run.
   void dispatchAll(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
                    gather::Rays& parameters, int lights, glm::ivec3 samples) const {
-    const std::int64_t ofRay = method.turns(*bits), ofLight = 1 + 4;
+    const std::int64_t ofRay = method.turns(*bits) + stop.turns(*bits), ofLight = 1 + 4;
     // Half of the limit at most, which leaves room for a ray.
     const int lightsAtOnce = portionOf(lights, 2 * ofLight);
     forEachPortion(rays, ofRay + lightsAtOnce * ofLight, [&](int firstRay, int raysAtOnce) {
@@ -239,10 +247,11 @@ class GatherPass : public Pass {
         parameters.first = firstRay == 0 && light == 0;
         parameters.last = firstRay + raysAtOnce == rays && light + count == lights;
         parameters.addsRest = light == 0;
-        frame.dispatch(program,
-                       {bound, gather::rays(parameters),
-                        projection.binding(bits->grid.voxelSize, asPublished, light, count)},
-                       samples);
+        frame.dispatch(
+            program,
+            {bound, gather::rays(parameters),
+             projection.binding(stop.voxelsOfMap() * bits->grid.voxelSize, asPublished, light, count)},
+            samples);
       }
     });
   }

@@ -1,6 +1,7 @@
 // Traces given rays, for tests and measurements.
 #include "near_field_voxels_shaders.h"
 #include "passes.h"
+#include "planes.h"
 
 namespace lumivox::near_field_voxels {
 
@@ -14,10 +15,14 @@ class ProbePass : public Pass {
                     "start of a ray in world space; w: its length, m, or below 0 for no ray"};
   In<Image> directions{this, "directions", "its direction, of unit length"};
   RayMethod method{this};
+  RayStop stop{this};
   Out<Image> hits{this, "hits", Contributes::nothing, Needs::nothing,
                   "the first voxel that a ray hits, -1 without a hit; w: distance to it, m"};
   Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
                      "in r: texels of the stacks that were read"};
+
+  bool uses(const InBase& input) const override { return !stop.isInput(input) || stop.atPlanes(); }
+  std::string checkParameters() const override { return stop.check(method); }
 
   void run(PassContext& frame) override {
     const gpu::TextureDescription& rays = origins->texture->description();
@@ -25,8 +30,9 @@ class ProbePass : public Pass {
         .format = gpu::Format::rgba32f, .width = rays.width, .height = rays.height};
     hits = Image{frame.texture(images, "voxels that rays meet"), false};
     fetches = Image{frame.texture(images, "texels that rays read"), false};
-    frame.dispatch(frame.program(probe::Variant{.bitRule = method.axis()}),
-                   {method.binding(frame, *bits), probe::origins(origins->texture, gpu::Sampling::nearest),
+    frame.dispatch(frame.program(probe::Variant{.planes = stop.atPlanes(), .bitRule = method.axis()}),
+                   {method.binding(frame, *bits), stop.binding(frame, *bits, "near_field_voxels.probe"),
+                    probe::origins(origins->texture, gpu::Sampling::nearest),
                     probe::directions(directions->texture, gpu::Sampling::nearest),
                     probe::voxelImage(hits->texture), probe::fetchImage(fetches->texture)},
                    {rays.width, rays.height, 1});

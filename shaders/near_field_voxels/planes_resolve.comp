@@ -1,0 +1,39 @@
+#version 450
+// The planes of each voxel: the mean normal of a group through its mean place. Each plane faces away from the other group's mean place. At a
+// convex edge the solid then lies behind both planes, at a concave one the free space; either way, the surface of a plane ends where the
+// other plane cuts it.
+layout(local_size_x = 64) in;
+#include "common/voxel_planes.glsl"
+#include "planes_sums.glsl"
+#include "toolkit/slots.glsl"
+layout(std430, binding = 6) readonly buffer PlaneSums { int planeSums[]; };
+layout(std430, binding = 7) writeonly buffer VoxelPlanes { uvec2 voxelPlanes[]; };
+
+struct Group {
+  bool any;
+  vec3 place, normal;
+};
+
+Group groupOf(uint slot, uint number) {
+  uint base = (2u * slot + number) * kPlaneSums;
+  vec3 normal = signedMeanOf(planeSums[base], planeSums[base + 1u], planeSums[base + 2u]);
+  float share = float(planeSums[base + 6u]) / kSignedFixedPoint, across = length(normal);
+  if (!(share > 0.0 && across > 0.0)) return Group(false, vec3(0.0), vec3(0.0));
+  return Group(true, signedMeanOf(planeSums[base + 3u], planeSums[base + 4u], planeSums[base + 5u]) / share, normal / across);
+}
+
+uint planeOf(Group group, Group other) {
+  if (!group.any) return 0u;
+  float offset = dot(group.normal, group.place);
+  bool turned = other.any && dot(group.normal, other.place) > offset;
+  return packPlane(turned ? SurfacePlane(-group.normal, -offset, true) : SurfacePlane(group.normal, offset, false));
+}
+
+void main() {
+  uint slot;
+  ivec3 voxel;
+  if (!slotHere(slot, voxel)) return;
+  Group first = groupOf(slot, 0u), second = groupOf(slot, 1u);
+  uvec2 planes = uvec2(planeOf(first, second), planeOf(second, first));
+  voxelPlanes[slot] = planes.x != 0u ? planes : planes.yx;
+}

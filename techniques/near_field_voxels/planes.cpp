@@ -1,0 +1,63 @@
+// Planes of the surface within each occupied voxel, from sums over its fragments that are the same in any
+// order.
+#include "planes.h"
+
+#include <fmt/format.h>
+
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/bit_grid.h"
+#include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/voxel_slots.h"
+#include "near_field_voxels_shaders.h"
+
+namespace lumivox::near_field_voxels {
+
+namespace code = shaders::near_field_voxels;
+
+RayStop::RayStop(Pass* pass)
+    : stop_(
+          pass, "stop", Stop::box,
+          "where a ray ends in an occupied voxel; box: where it enters the voxel; plane: where it meets the surface within the voxel, up to two planes fitted to 'fragments', or it passes",
+          published(Stop::box)),
+      fragments_(pass, "fragments", Presence::optional,
+                 "with 'stop plane': the surface samples that 'bits' are made from") {}
+
+std::string RayStop::check(const RayMethod& method) const {
+  if (!atPlanes() || method.axis() != shaders::near_field_voxels::gather::Variant::bitRulePrinted) return {};
+  return "'stop plane' with 'method printed'; expected 'stop box', or another method";
+}
+
+shader::BindingSet RayStop::binding(PassContext& frame, const BinaryGrid& bits, const std::string& pass) {
+  if (!atPlanes()) return {};
+  if (!fragments_.present())
+    throw Error(fmt::format("{}: 'stop plane' reads 'fragments'; expected it to be connected", pass));
+  if (!(fragments_->grid == bits.grid))
+    throw Error(fmt::format("{}: 'bits' have {}, and 'fragments' {}; expected one grid for both", pass,
+                            inWords(bits.grid), inWords(fragments_->grid)));
+  const VoxelSlots slots = claimSlots(frame, *fragments_, room_);
+  const gpu::BufferRef keys =
+      frame.emptyElements(code::planes_key::planeKeys, 2 * slots.room, "normals of groups");
+  const gpu::BufferRef sums =
+      frame.emptyElements(code::planes_add::planeSums, 2 * 7 * slots.room, "sums of groups");
+  const gpu::BufferRef planes =
+      frame.elements(code::planes_resolve::voxelPlanes, slots.room, "planes of voxels");
+  for (int second = 0; second < 2; ++second)
+    forEachFragment(frame, frame.program(code::planes_key::Variant{.second = second}),
+                    {code::planes_key::planeKeys(keys), SlotBinding(slots)}, *fragments_);
+  forEachFragment(frame, frame.program(code::planes_add::kProgram),
+                  {code::planes_add::planeKeys(keys), code::planes_add::planeSums(sums), SlotBinding(slots)},
+                  *fragments_);
+  forEachSlot(frame, frame.program(code::planes_resolve::kProgram),
+              {code::planes_resolve::planeSums(sums), code::planes_resolve::voxelPlanes(planes)}, slots);
+  return {shader::StorageSlot{"VoxelPlanes"}(planes),
+          shader::SampledSlot{"planeSlots"}(slots.numbers, gpu::Sampling::nearest)};
+}
+
+std::int64_t RayStop::turns(const BinaryGrid& bits) const {
+  if (!atPlanes()) return 0;
+  // A voxel that the ray passes is one more step, and may make the walk go down to single columns again.
+  const glm::i64vec3 size(bits.grid.resolution);
+  return turnsOfBitStep(bits) * 4 * (size.x + size.y + size.z + 1);
+}
+
+}  // namespace lumivox::near_field_voxels

@@ -1,0 +1,35 @@
+// Where a ray through bits ends within an occupied voxel. GLSL side: shaders/common/voxel_planes.glsl.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "passes.h"
+
+namespace lumivox::near_field_voxels {
+
+/// The end of rays in occupied voxels: a parameter and an input of a pass.
+class RayStop {
+ public:
+  explicit RayStop(Pass* pass);
+  bool atPlanes() const { return stop_ == Stop::plane; }
+  bool isInput(const InBase& input) const { return &input == &fragments_; }
+  /// What is wrong with the parameters, in words, or empty.
+  std::string check(const RayMethod& method) const;
+  /// With planes, makes them from the fragments and binds them. Error where the fragments are missing or on
+  /// another grid than the bits. `pass`: whose input they are.
+  shader::BindingSet binding(PassContext& frame, const BinaryGrid& bits, const std::string& pass);
+  /// How far the end of a ray may lie from the surface that a map shows, in the voxels' own measure
+  /// (BackProjection::binding()): planes are nearer to it than boxes.
+  float voxelsOfMap() const { return atPlanes() ? 0.5f : 1.0f; }
+  /// A bound for the loop iterations that are added to those of a ray that ends at the first voxel.
+  std::int64_t turns(const BinaryGrid& bits) const;
+
+ private:
+  enum class Stop { box, plane };
+  Param<Stop> stop_;
+  In<VoxelFragments> fragments_;
+  std::uint64_t room_ = 0;  ///< number of slots: a guess, or what earlier frames needed
+};
+
+}  // namespace lumivox::near_field_voxels
