@@ -223,7 +223,11 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
 #else
   const int coarsest = 0;
 #endif
+#if PLANES
+  const int kFirst = 1;  // rays begin at a surface
+#else
   const int kFirst = 3;  // as published: the block around a surface is hardly ever empty at coarser levels
+#endif
   int level = min(kFirst, coarsest);
   while (t <= reach) {
     ivec2 size = max(voxels.xy >> level, 1), texel = min(voxel.xy >> level, size - 1);

@@ -5,30 +5,26 @@
 #ifndef LUMIVOX_VOXEL_PLANES
 #define LUMIVOX_VOXEL_PLANES
 
-struct SurfacePlane {
-  vec3 normal;   // unit
-  float offset;
-  bool turned;   // the surface faces away from the normal
-};
+// A plane in a word: 11 bits each for two coordinates of its normal in octahedral form (Cigolle et al. 2014), 9 bits from 1 on for its
+// offset over the normal's sum of absolute components, which is at most 1/2 in a voxel, and one bit: the surface faces against the normal.
+// 0: no plane.
+const float kNormalSteps = 1023.0, kOffsetSteps = 510.0;
 
-// A plane in a word: octahedral normal (Cigolle et al. 2014), two numbers of 11 bits; 9 bits of offset, from 1 on; `turned`. 0: no plane.
-const float kNormalSteps = 1023.0, kOffsetSteps = 255.0, kLargestOffset = 0.875;  // a voxel's half diagonal is 0.866
-
-uint packPlane(SurfacePlane plane) {
-  vec3 normal = plane.normal;
-  vec2 p = normal.xy / (abs(normal.x) + abs(normal.y) + abs(normal.z));
+uint packPlane(vec3 normal, float offset, bool turned) {
+  float sum = abs(normal.x) + abs(normal.y) + abs(normal.z);
+  vec2 p = normal.xy / sum;
   if (normal.z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
   uvec2 steps = uvec2(ivec2(roundEven(clamp(p, -1.0, 1.0) * kNormalSteps)) + int(kNormalSteps));
-  int along = int(roundEven(clamp(plane.offset / kLargestOffset, -1.0, 1.0) * kOffsetSteps)) + int(kOffsetSteps) + 1;
-  return steps.x | steps.y << 11 | uint(along) << 22 | (plane.turned ? 0x80000000u : 0u);
+  uint along = uint(roundEven((clamp(offset / sum, -0.5, 0.5) + 0.5) * kOffsetSteps)) + 1u;
+  return steps.x | steps.y << 11 | along << 22 | (turned ? 0x80000000u : 0u);
 }
 
-SurfacePlane unpackPlane(uint word) {
-  vec2 p = vec2(ivec2(word & 2047u, word >> 11 & 2047u) - int(kNormalSteps)) / kNormalSteps;
-  vec3 normal = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  if (normal.z < 0.0) normal.xy = (1.0 - abs(normal.yx)) * vec2(normal.x >= 0.0 ? 1.0 : -1.0, normal.y >= 0.0 ? 1.0 : -1.0);
-  float offset = float(int(word >> 22 & 511u) - int(kOffsetSteps) - 1) * (kLargestOffset / kOffsetSteps);
-  return SurfacePlane(normalize(normal), offset, word >> 31 != 0u);
+// xyz: the normal, with 1 as the sum of its absolute components; w: the offset by that measure.
+vec4 unpackPlane(uint word) {
+  vec2 p = vec2(uvec2(word, word >> 11) & 2047u) / kNormalSteps - 1.0;
+  float z = 1.0 - abs(p.x) - abs(p.y);
+  if (z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+  return vec4(p, z, (float(word >> 22 & 511u) - 1.0) / kOffsetSteps - 0.5);
 }
 
 #ifdef LUMIVOX_BIT_GRID
@@ -42,14 +38,14 @@ const float kPlaneSlack = 1.0 / 16.0;
 // it may begin behind the mean plane.
 const float kNoBacks = 0.5;
 
-// Where the ray meets a plane, between two t, on the side behind the other plane; kNever: nowhere.
-float meetsPlane(SurfacePlane plane, bool clipped, SurfacePlane other, vec3 fromCentre, float from, float to) {
-  float slope = dot(plane.normal, bitDirection);
-  if (slope == 0.0) return kNever;
-  float t = (plane.offset - dot(plane.normal, fromCentre)) / slope;
-  if (!(t >= from && t <= to)) return kNever;
-  if (t < kNoBacks && (slope > 0.0) != plane.turned) return kNever;
-  return clipped && dot(other.normal, fromCentre + t * bitDirection) > other.offset + kPlaneSlack ? kNever : t;
+// Where the ray meets a plane within the voxel and behind the other plane, if there is one; kNever: nowhere.
+float meetsPlane(uint word, vec4 plane, bool clipped, vec4 other, vec3 fromCentre) {
+  float slope = dot(plane.xyz, bitDirection), t = (plane.w - dot(plane.xyz, fromCentre)) / slope;
+  vec3 place = fromCentre + t * bitDirection;
+  // Written so that a ray along the plane, whose t is none, meets it nowhere.
+  bool meets = t >= 0.0 && all(lessThanEqual(abs(place), vec3(0.5 + kPlaneSlack)));
+  if (clipped) meets = meets && dot(other.xyz, place) <= other.w + kPlaneSlack;
+  return meets && (t >= kNoBacks || (slope > 0.0) == (word >> 31 != 0u)) ? t : kNever;
 }
 
 // The t at which the ray that is followed ends in an occupied voxel; kNever: it passes. In a voxel without planes it ends at the box.
@@ -58,11 +54,10 @@ float stopIn(ivec3 voxel, float enters) {
   if (slot == 0u || slot > uint(voxelPlanes.length())) return enters;
   uvec2 words = voxelPlanes[slot - 1u];
   vec3 fromCentre = bitOrigin - (vec3(voxel) + 0.5);
-  float from = max(enters - kPlaneSlack, 0.0), to = leavesVoxel(voxel) + kPlaneSlack;
-  SurfacePlane first = unpackPlane(words.x), second = unpackPlane(words.y);
-  bool two = words.y != 0u;
-  float t = meetsPlane(first, two, second, fromCentre, from, to);
-  return two ? min(t, meetsPlane(second, true, first, fromCentre, from, to)) : t;
+  vec4 first = unpackPlane(words.x);
+  if (words.y == 0u) return meetsPlane(words.x, first, false, first, fromCentre);
+  vec4 second = unpackPlane(words.y);
+  return min(meetsPlane(words.x, first, true, second, fromCentre), meetsPlane(words.y, second, true, first, fromCentre));
 }
 
 #endif

@@ -26,7 +26,7 @@ uint planeOf(Group group, Group other) {
   if (!group.any) return 0u;
   float offset = dot(group.normal, group.place);
   bool turned = other.any && dot(group.normal, other.place) > offset;
-  return packPlane(turned ? SurfacePlane(-group.normal, -offset, true) : SurfacePlane(group.normal, offset, false));
+  return turned ? packPlane(-group.normal, -offset, true) : packPlane(group.normal, offset, false);
 }
 
 void main() {

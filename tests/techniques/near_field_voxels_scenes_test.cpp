@@ -51,6 +51,16 @@ TEST_CASE("near-field voxels err on the Cornell box and the arcade by less than 
   CHECK(ofLight(committed("arcade"), {80, 45}, {"rays=64", "resolution=64"}).rmse < 0.45);
 }
 
+TEST_CASE(
+    "rays that end at surfaces within voxels occlude an arcade, where boxes are no better than nothing") {
+  const std::vector<std::string> planes{"rays=64", "stop=plane", "offset=0.5"};
+  const Scene arcade = committed("arcade"), cornell = committed("cornell");
+  CHECK(ofOcclusion(arcade, {80, 45}, planes).rmse < 0.5);
+  CHECK(ofOcclusion(arcade, {80, 45}, {"rays=64"}).rmse > 0.9);
+  CHECK(ofOcclusion(cornell, {64, 64}, planes).rmse < 0.15);
+  CHECK(ofLight(cornell, {64, 64}, planes).ratio == Approx(1.0).epsilon(0.03));
+}
+
 TEST_CASE("with a thousand rays what is left of the error is bias, which falls from 32 voxels to 128") {
   const Scene cornell = committed("cornell");
   std::map<int, Against> found;
@@ -97,6 +107,30 @@ TEST_CASE("errors of light and of occlusion by voxels and rays", "[.]") {
       else
         CHECK(found.rmse < ofFewRays);
     }
+  }
+}
+
+// The table of the card; minutes.
+TEST_CASE("errors of rays that end at boxes and at planes within voxels", "[.]") {
+  KeptTable table("near_field_voxels.planes", {{"light, box", 3, 0.02},
+                                               {"light, plane", 3, 0.02},
+                                               {"ratio, box", 2, 0.015},
+                                               {"ratio, plane", 2, 0.015},
+                                               {"occlusion, box", 3, 0.02},
+                                               {"occlusion, plane", 3, 0.02}});
+  for (const char* name : {"cornell", "cornell_glossy", "corridor", "arcade", "spinning_box", "sibenik",
+                           "untuned/court", "untuned/room"}) {
+    const Scene scene = committed(name);
+    const Picture picture = name == std::string("arcade") ? Picture{80, 45, 1024} : Picture{64, 64, 1024};
+    const std::vector<std::string> boxes{"rays=64"}, planes{"rays=64", "stop=plane", "offset=0.5"};
+    const Against light = ofLight(scene, picture, boxes), planesLight = ofLight(scene, picture, planes);
+    const double occlusion = ofOcclusion(scene, picture, boxes).rmse,
+                 planesOcclusion = ofOcclusion(scene, picture, planes).rmse;
+    table.row(name,
+              {light.rmse, planesLight.rmse, light.ratio, planesLight.ratio, occlusion, planesOcclusion});
+    CAPTURE(name);
+    CHECK(planesLight.rmse < light.rmse);
+    CHECK(planesOcclusion < 0.6 * occlusion);
   }
 }
 
