@@ -132,6 +132,13 @@ SceneBuilder solidBox() {
   return builder;
 }
 
+/// A room of 16 m around the origin, whose voxels are about a metre wide in a grid of 16.
+SceneBuilder room16() {
+  SceneBuilder builder;
+  builder.box(glm::vec3(-8.0f), glm::vec3(8.0f), builder.lambert(0.5f), true);
+  return builder;
+}
+
 SceneBuilder slantedSheet() {
   SceneBuilder builder;
   builder.quad({-8, -3, -8}, {1, 2, 16}, {16, 4, -1}, builder.lambert(0.5f));
@@ -292,6 +299,62 @@ TEST_CASE("a point beside a wall is occluded by the wall, where boxes take all o
   CAPTURE(expected, planes, boxes);
   CHECK(planes == Approx(expected).epsilon(0.05));
   CHECK(std::abs(boxes - expected) > 3.0 * std::abs(planes - expected));
+}
+
+TEST_CASE("a ray from the lower of two steps within a voxel passes the plane between them") {
+  SceneBuilder builder = room16();
+  const int white = builder.lambert(0.5f);
+  builder.quad({-7, 0.3f, -7}, {0, 0, 14}, {7.5f, 0, 0}, white);
+  builder.quad({0.5f, 0.3f, -7}, {0, 0, 14}, {0, 0.4f, 0}, white);
+  builder.quad({0.5f, 0.7f, -7}, {0, 0, 14}, {6.5f, 0, 0}, white);
+  const Voxelized voxels(builder, 16);
+  const glm::dvec3 point(0.3, 0.3, 0.1);
+  Gatherer gatherer(voxels.bits, voxels.scene);
+  gatherer.in("fragments", voxels.fragments);
+  gatherer.at(point - voxels.snapshot.origin, kUp)
+      .with({{"rays", 4096}, {"occlusion_distance", 4}, {"stop", "plane"}, {"offset", 0.1}});
+  // Of the step alone, which is long: half of one less the cosine to its edge.
+  const double ofStep = 0.5 * (1.0 - 0.2 / std::hypot(0.2, 0.4)), occluded = 1.0 - gatherer.mean("occlusion");
+  CAPTURE(ofStep, occluded);
+  CHECK(occluded < ofStep + 0.15);
+}
+
+TEST_CASE("rays end at the last voxel of a thin wall too, where both sides make one plane") {
+  SceneBuilder builder = room16();
+  const int white = builder.lambert(0.5f);
+  builder.quad({-7, 0.3f, -7}, {7.5f, 0, 0}, {0, 0, 14}, white);    // faces down
+  builder.quad({-7, 0.7f, -7}, {0, 0, 14}, {7.5f, 0, 0}, white);    // faces up
+  builder.quad({0.5f, 0.3f, -7}, {0, 0.4f, 0}, {0, 0, 14}, white);  // the end
+  const Voxelized voxels(builder, 16);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 100; ++i)
+    for (const double side : {1.0, -1.0})
+      rays.push_back({{0.2 + 0.002 * i, 0.5 + side * 4.0, -5.0 + 0.1 * i}, {0, -side, 0}});
+  for (const double end : voxels.ends(rays, kAtPlanes)) CHECK(end == Approx(4.0).margin(0.3));
+}
+
+TEST_CASE("behind voxels that a ray passes it ends at the box of one without planes") {
+  SceneBuilder builder = room16();
+  builder.quad({-7, 0.3f, -7}, {0, 0, 9}, {14, 0, 0}, builder.lambert(0.5f));
+  Voxelized voxels(builder, 16);
+  const GridPlacement grid = voxels.bits.grid;
+  VoxelSet set(grid.resolution);
+  for (const Cell& cell : cellsOf(voxels.bits)) set.insert({cell[0], cell[1], cell[2]});
+  // Above the sheet, in its voxels, and along z.
+  const Ray ray{{0.4, 0.8, -6}, {0, 0, 1}};
+  const glm::dvec3 low = glm::dvec3(grid.low) + voxels.snapshot.origin;
+  const glm::ivec3 further(glm::floor((glm::dvec3(0.4, 0.8, 4.0) - low) / voxels.voxel()));
+  const double box = low.z + voxels.voxel() * further.z + 6.0;
+  for (const char* method : {"hierarchy", "stacks", "plain"}) {
+    const Settings settings{{"stop", "plane"}, {"method", method}};
+    CHECK(voxels.ends({ray}, settings)[0] > box + 1.0);  // the wall of the room
+    Voxelized more = voxels;
+    VoxelSet with = set;
+    with.insert(further);
+    more.bits = gridOf(with);
+    more.bits.grid = grid;
+    CHECK(more.ends({ray}, settings)[0] == Approx(box).epsilon(1e-5));
+  }
 }
 
 TEST_CASE("rays that end at boxes ignore the fragments, to the bit") {
