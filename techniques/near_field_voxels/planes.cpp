@@ -55,9 +55,9 @@ shader::BindingSet RayStop::binding(PassContext& frame, const BinaryGrid& bits, 
 
 std::int64_t RayStop::turns(const BinaryGrid& bits) const {
   if (!atPlanes()) return 0;
-  // A voxel that the ray passes is one more step, and may make the walk go down to single columns again.
-  const glm::i64vec3 size(bits.grid.resolution);
-  return turnsOfBitStep(bits) * 4 * (size.x + size.y + size.z + 1);
+  // A voxel that the ray passes is one more step where the next one lies in the same column. Behind the last
+  // one of a column the walk goes on as behind a column without voxels.
+  return turnsOfBitStep(bits) * bits.grid.resolution.z;
 }
 
 }  // namespace lumivox::near_field_voxels

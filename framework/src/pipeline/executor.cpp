@@ -205,7 +205,7 @@ std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const Scen
   }
   for (auto index = plan->order.rbegin(); index != plan->order.rend(); ++index) {
     if (!runs[static_cast<std::size_t>(*index)]) continue;
-    for (const OutputIndex source : sourcesNow(graph.passes[static_cast<std::size_t>(*index)])) {
+    for (const OutputIndex source : sourcesRead(graph.passes[static_cast<std::size_t>(*index)], request)) {
       if (plan->output(source).wanted && !graph.output(source).hasValue()) {
         runs[static_cast<std::size_t>(source.pass)] = true;
       }
