@@ -4,7 +4,7 @@
 // adds them to the sums of earlier dispatches. Deviates: Listings 4.45 to 4.49 trace one ray per pass, store hit points in a buffer before
 // lighting them, and blend the passes.
 #pragma lumivox axis ARRIVING 0 1
-#pragma lumivox axis RADIANCE none map voxels
+#pragma lumivox axis RADIANCE none map voxels faces
 #pragma lumivox axis OCCLUSION 0 1
 #pragma lumivox axis FETCHES 0 1
 #pragma lumivox axis MAP_LOBES 0 1
@@ -77,6 +77,14 @@ layout(binding = 2, rgba32f) uniform image2D fetchImage;
 #if RADIANCE == RADIANCE_VOXELS
 layout(binding = 10) uniform sampler3D radianceGrid;
 layout(std140, binding = 3) uniform Radiance { float radianceUnit; };
+#elif RADIANCE == RADIANCE_FACES
+layout(binding = 10) uniform sampler3D positiveX;  // by the outward normals of the faces
+layout(binding = 14) uniform sampler3D negativeX;
+layout(binding = 15) uniform sampler3D positiveY;
+layout(binding = 16) uniform sampler3D negativeY;
+layout(binding = 17) uniform sampler3D positiveZ;
+layout(binding = 18) uniform sampler3D negativeZ;
+layout(std140, binding = 3) uniform Radiance { float radianceUnit; };
 #endif
 
 // Random shift of the sequence, in units of 2^-32. A hash of the position in a tile replaces the printed small texture of random numbers.
@@ -124,7 +132,15 @@ vec3 radianceOf(BitHit hit) {
   vec3 point = gridLow + voxelSize * hitPointOf(hit);
   return radianceAt(point, printedTests != 0 ? receiver - point : -bitDirection);
 #else
+#if RADIANCE == RADIANCE_VOXELS
   vec4 value = texelFetch(radianceGrid, hit.voxel, 0);
+#else
+  // The three faces that the ray sees, by the weights with which cones blend them (thesis, Listing 4.15).
+  vec3 along = abs(bitDirection);
+  vec4 value = along.x * (bitDirection.x < 0.0 ? texelFetch(positiveX, hit.voxel, 0) : texelFetch(negativeX, hit.voxel, 0)) +
+               along.y * (bitDirection.y < 0.0 ? texelFetch(positiveY, hit.voxel, 0) : texelFetch(negativeY, hit.voxel, 0)) +
+               along.z * (bitDirection.z < 0.0 ? texelFetch(positiveZ, hit.voxel, 0) : texelFetch(negativeZ, hit.voxel, 0));
+#endif
   return value.a > 0.0 ? value.rgb * (radianceUnit / value.a) : vec3(0.0);
 #endif
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/ports/directional_radiance_grid.h"
 #include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
@@ -40,6 +41,9 @@ class GatherPass : public Pass {
       "what the lights see: the radiance of hits; without it only the environment shines", Needs::anyLight};
   In<RadianceGrid> voxels{this, "voxels", Presence::optional,
                           "with 'radiance voxels': the radiance of hits, on the grid of 'bits'"};
+  In<DirectionalRadianceGrid> directions{
+      this, "directions", Presence::optional,
+      "with 'radiance voxels', in place of 'voxels': the same by the six faces of a voxel; a ray sees three"};
   Param<int> rays{this, "rays", 32, within(1, 1 << 20), "rays per pixel, distributed as the cosine"};
   Param<Pixels> pixelsOf{this, "pixels", Pixels::full,
                          "pixels that send rays; full: all; half: one of 2 x 2; quarter: one of 4 x 4"};
@@ -106,7 +110,9 @@ class GatherPass : public Pass {
   bool uses(const InBase& input) const override {
     if (&input == &map) return arriving.wanted() && radiance == Radiance::map;
     if (stop.isInput(input)) return stop.atPlanes();
-    return &input != &voxels || (arriving.wanted() && radiance == Radiance::voxels);
+    if (&input == &voxels && directions.present()) return false;
+    return (&input != &voxels && &input != &directions) ||
+           (arriving.wanted() && radiance == Radiance::voxels);
   }
   std::string checkParameters() const override {
     const std::string ofStop = stop.check(method);
@@ -115,17 +121,31 @@ class GatherPass : public Pass {
 
   bool readsMap() const { return radiance == Radiance::map && map.present() && map->lightCount > 0; }
 
+  /// Whether every voxel of `part` is one of `all` under the same number. A grid that halves evenly may have
+  /// a voxel more along an axis.
+  static bool covers(const GridPlacement& all, const GridPlacement& part) {
+    return all.low == part.low && all.voxelSize == part.voxelSize &&
+           glm::all(glm::greaterThanEqual(all.resolution, part.resolution));
+  }
+
   /// Error where the connected inputs do not belong together.
   void checkInputs() const {
     if (!arriving.wanted()) return;
     if (radiance == Radiance::voxels) {
-      if (!voxels.present())
+      if (!voxels.present() && !directions.present())
         throw Error(
-            "near_field_voxels.gather: 'radiance voxels' reads 'voxels'; expected it to be connected");
-      if (!(voxels->grid == bits->grid))
-        throw Error(fmt::format(
-            "near_field_voxels.gather: 'bits' have {}, and 'voxels' {}; expected one grid for both",
-            inWords(bits->grid), inWords(voxels->grid)));
+            "near_field_voxels.gather: 'radiance voxels' reads 'voxels' or 'directions'; expected one of them to "
+            "be connected");
+      const bool faces = directions.present();
+      const GridPlacement& grid = faces ? directions->grid : voxels->grid;
+      if (!covers(grid, bits->grid))
+        throw Error(
+            fmt::format("near_field_voxels.gather: 'bits' have {}, and '{}' {}; expected one grid for both",
+                        inWords(bits->grid), faces ? "directions" : "voxels", inWords(grid)));
+      if (faces && directions->finest != nullptr)
+        throw Error(
+            "near_field_voxels.gather: the finest level of 'directions' is the same for all sides; expected "
+            "faces, as voxel_cone_tracing.inject_directional makes them");
     }
     if (readsMap()) requireWhole(*map, "near_field_voxels.gather");
   }
@@ -191,12 +211,14 @@ class GatherPass : public Pass {
     const bool goesOn = (!arriving.wanted() || light.previous) && (!occlusion.wanted() || open.previous);
     gather::Rays parameters =
         parametersOf(frame, goesOn && framesOf == Frames::sum ? frame.accumulated() : 0);
-    const bool fromMap = arriving.wanted() && readsMap();
+    const bool fromMap = arriving.wanted() && readsMap(),
+               stored = arriving.wanted() && radiance == Radiance::voxels,
+               fromFaces = stored && directions.present(), fromVoxels = stored && !fromFaces;
     const gather::Variant variant{.arriving = arriving.wanted(),
-                                  .radiance = fromMap ? gather::Variant::radianceMap
-                                              : arriving.wanted() && radiance == Radiance::voxels
-                                                  ? gather::Variant::radianceVoxels
-                                                  : gather::Variant::radianceNone,
+                                  .radiance = fromMap      ? gather::Variant::radianceMap
+                                              : fromFaces  ? gather::Variant::radianceFaces
+                                              : fromVoxels ? gather::Variant::radianceVoxels
+                                                           : gather::Variant::radianceNone,
                                   .occlusion = occlusion.wanted(),
                                   .fetches = fetches.wanted(),
                                   .mapLobes = fromMap && map->specular != nullptr,
@@ -222,7 +244,16 @@ class GatherPass : public Pass {
                              gather::earlierOpen(earlier(open), gpu::Sampling::nearest)};
     if (fromMap) bound.add(ReflectiveShadowMapBinding(*map));
     if (variant.mapLobes) bound.add(gather::rsmSpecular(map->specular, gpu::Sampling::nearest));
-    if (voxels.present() && radiance == Radiance::voxels) {
+    if (fromFaces) {
+      const auto& faces = directions->faces;
+      constexpr gpu::Sampling kNearest = gpu::Sampling::nearest;
+      bound.add(
+          shader::BindingSet{gather::positiveX(faces[0], kNearest), gather::negativeX(faces[1], kNearest),
+                             gather::positiveY(faces[2], kNearest), gather::negativeY(faces[3], kNearest),
+                             gather::positiveZ(faces[4], kNearest), gather::negativeZ(faces[5], kNearest),
+                             gather::radiance({.radianceUnit = directions->unit})});
+    }
+    if (fromVoxels) {
       bound.add(gather::radianceGrid(voxels->radiance, gpu::Sampling::nearest));
       bound.add(gather::radiance({.radianceUnit = voxels->unit}));
     }

@@ -31,6 +31,9 @@ class GatherPass : public Pass {
   In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
   In<SurfaceLights> moreLights{this, "more_lights", Presence::optional,
                                "more virtual area lights, from another pass"};
+  In<SurfaceLights> reflected{
+      this, "reflected", Presence::optional,
+      "points that reflect the light of the frame before ('bounce'): they lie where other lights do, too"};
   In<PointSight> sight{this, "sight", Presence::optional,
                        "with 'visibility directions': what the points see, from 'look'"};
   Param<Visibility> visibility{this, "visibility", Visibility::sphere, kVisibilityMeaning,
@@ -66,7 +69,7 @@ class GatherPass : public Pass {
   };
   struct DiffuseKey {
     gpu::TextureRef points;
-    gpu::BufferRef lights, more, sight;
+    gpu::BufferRef lights, more, reflected, sight;
     glm::vec3 environment;
     bool operator==(const DiffuseKey&) const = default;
   };
@@ -75,13 +78,19 @@ class GatherPass : public Pass {
   /// Whether directions are asked: not where nothing occludes.
   bool asks() const { return byDirection() && sight->nearest; }
 
+  /// Not in a first frame.
+  bool reflects() const { return reflected && reflected->count > 0; }
+
   void run(PassContext& frame) override {
     if (byDirection() && !sight.present())
       throw Error(
           "virtual_area_lights.gather: 'visibility directions' reads 'sight'; expected it to be connected to a "
           "pass virtual_area_lights.look");
-    const DiffuseKey key{points->position, lights ? lights->lights : nullptr,
-                         moreLights ? moreLights->lights : nullptr, asks() ? sight->nearest : nullptr,
+    const DiffuseKey key{points->position,
+                         lights ? lights->lights : nullptr,
+                         moreLights ? moreLights->lights : nullptr,
+                         reflects() ? reflected->lights : nullptr,
+                         asks() ? sight->nearest : nullptr,
                          asks() ? frame.sceneDescription().environment : glm::vec3(0.0f)};
     const Averaged& diffuse = frame.kept("diffuse light of points", key,
                                          [&] { return gather(frame, gather::Variant::lobeDiffuse); });
@@ -98,10 +107,10 @@ class GatherPass : public Pass {
   Averaged gather(PassContext& frame, int lobe) const {
     const Averaged result{sparseTexture(frame, *points, "averaged light"),
                           sparseTexture(frame, *points, "place of averaged light")};
-    const std::array<const In<SurfaceLights>*, 2> all{&lights, &moreLights};
-    int total = 0, added = 0;
+    const std::array<const In<SurfaceLights>*, 3> all{&lights, &moreLights, &reflected};
+    int total = 0, added = 0, upon = 0;  // upon each other, of all lists together
     for (const In<SurfaceLights>* some : all)
-      if (*some) total += (*some)->count;
+      if (*some) total += (*some)->count, upon += (*some)->overlapping;
     const bool sky = asks() && frame.traits().environment;
     if (total == 0 && !sky) return result;
     const Method how = method;
@@ -143,6 +152,7 @@ class GatherPass : public Pass {
            .overlapping = 1.0f});
     for (const In<SurfaceLights>* some : all) {
       if (!*some) continue;
+      const auto overlapping = static_cast<float>(reflects() ? upon : (*some)->overlapping);
       for (int first = 0; first < (*some)->count; first += most) {
         const int count = std::min(most, (*some)->count - first);
         const int before = added;
@@ -155,7 +165,7 @@ class GatherPass : public Pass {
                                             .ends = added == total,
                                             .resolved = resolved,
                                             .factor = factor,
-                                            .overlapping = static_cast<float>((*some)->overlapping)};
+                                            .overlapping = overlapping};
         add((*some)->lights, parameters);
       }
     }

@@ -18,6 +18,7 @@ void addOcclude(TechniqueRegistry& registry);
 void addApply(TechniqueRegistry& registry);
 void addPixels(TechniqueRegistry& registry);
 void addBruteForce(TechniqueRegistry& registry);
+void addBounce(TechniqueRegistry& registry);
 
 /// How lights are occluded. One value for `gather` and `occlude`.
 enum class Visibility { sphere, directions };

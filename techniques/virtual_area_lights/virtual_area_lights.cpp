@@ -16,4 +16,5 @@ LUMIVOX_TECHNIQUE(registry) {
   addApply(registry);
   addPixels(registry);
   addBruteForce(registry);
+  addBounce(registry);
 }
