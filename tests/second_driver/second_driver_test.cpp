@@ -148,15 +148,18 @@ const std::vector<std::string> kNone;
 
 // Each pipeline stands in one case, so that none takes long. The last case finds those that stand in none.
 const std::map<std::string, std::vector<std::string>> kCases = {
-    {"direct light", {"direct_lighting", "screen_space", "reflective_shadow_maps", "virtual_area_lights"}},
+    {"direct light",
+     {"direct_lighting", "screen_space", "reflective_shadow_maps", "virtual_area_lights",
+      "virtual_area_lights_all_bounces"}},
     {"captured frames", {"captured_frames"}},
     {"imperfect volumes", {"imperfect_volumes", "imperfect_volumes_occlusion", "imperfect_volumes_visible"}},
     {"imperfect volumes by propagation", {"imperfect_volumes_propagation"}},
-    {"implicit visibility", {"implicit_visibility", "implicit_visibility_lights"}},
+    {"implicit visibility",
+     {"implicit_visibility", "implicit_visibility_lights", "implicit_visibility_all_bounces"}},
     {"light propagation volumes", {"light_propagation_volumes", "light_propagation_volumes_voxels"}},
     {"near field voxels",
-     {"near_field_voxels", "near_field_voxels_filtered", "near_field_voxels_occlusion", "voxel_path_tracing",
-      "voxel_path_tracing_filtered"}},
+     {"near_field_voxels", "near_field_voxels_filtered", "near_field_voxels_occlusion",
+      "near_field_voxels_all_bounces", "voxel_path_tracing", "voxel_path_tracing_filtered"}},
     {"layers of maps", {"layered_reflective_shadow_maps"}},
     {"media", {"volumetric_smoke"}},
     {"dense grids", {"voxel_cone_tracing", "voxel_cone_tracing_lobes", "voxel_cone_tracing_soft_shadows"}},

@@ -5,8 +5,9 @@
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis LINKED 0 1
+#pragma lumivox axis BEFORE 0 1  // leaves reflect what arrived in the frame before, too
 #pragma lumivox require !SHADOWS || LIGHTS
-#pragma lumivox require OF == reflected || (!LIGHTS && !LINKED)
+#pragma lumivox require OF == reflected || (!LIGHTS && !LINKED && !BEFORE)
 #include "nodes.glsl"
 #include "common/constants.glsl"
 #if LIGHTS
@@ -34,6 +35,9 @@ layout(binding = 3) uniform sampler2D emissions;
 #if LINKED
 layout(binding = 4) uniform sampler2D arrivingFromLights;
 #endif
+#if BEFORE
+layout(binding = 5) uniform sampler2D arrivedBefore;
+#endif
 layout(binding = 1, rgba32f) uniform writeonly image2D reflectedImage;
 layout(binding = 2, rgba32f) uniform writeonly image2D radianceImage;
 
@@ -55,6 +59,9 @@ void main() {
 #endif
 #if LINKED
   for (uint side = 0u; side < 2u; ++side) sides[side] += texelFetch(arrivingFromLights, texelOf(2u * leaf + side), 0).rgb;
+#endif
+#if BEFORE
+  for (uint side = 0u; side < 2u; ++side) sides[side] += texelFetch(arrivedBefore, texelOf(2u * leaf + side), 0).rgb;
 #endif
   vec3 lobe = texelFetch(albedos, texelOf(leaf), 0).rgb / kPi;
   sides[0] *= lobe;

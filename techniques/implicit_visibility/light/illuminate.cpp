@@ -45,6 +45,9 @@ class IlluminatePass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is lit"};
   In<ElementLinks> links{this, "links", "visible elements of each leaf, from push_links"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional, "lights and their visibility", Needs::anyLight};
+  In<ElementLight> before{
+      this, "before", Presence::history,
+      "light of the frame before: elements reflect what arrived then beside direct light, so that frames in a row come to all bounces; 'bounces' counts those of the first frame"};
   Param<int> bounces{
       this, "bounces", 1, within(1, 4096),
       "number of reflections before the visible surface; light from the environment counts as the first"};
@@ -115,16 +118,32 @@ class IlluminatePass : public Pass {
     return sent;
   }
 
+  /// The light of the frame before, if it is that of these elements; else null. Deforming elements keep their
+  /// numbers.
+  const ElementLight* lightBefore(const ElementLight& result) const {
+    const auto alike = [](const gpu::TextureRef& a, const gpu::TextureRef& b) {
+      return (a == nullptr) == (b == nullptr) && (a == nullptr || a->description() == b->description());
+    };
+    return before.present() && alike(before->irradiance, result.irradiance) &&
+                   alike(before->radiance, result.radiance) && alike(before->outgoing, result.outgoing)
+               ? &*before
+               : nullptr;
+  }
+
+  /// After a frame with n reflections one gathering gives n + 1: what arrived then is reflected with the
+  /// direct light, and no bounce counts twice.
   void illuminate(PassContext& frame, const ElementLight& result, const OutgoingRows* rows) {
     const shader::BindingSet common{NodeBinding(*elements, links->bins), LinkBinding(*links)};
+    const ElementLight* const earlier = lightBefore(result);
+    const int count = earlier != nullptr ? 1 : int(bounces);
     if (result.emission) gatherEmission(frame, common, result);
     Sent sent = empty(frame, rows, "radiance to be sent"),
-         next = bounces > 1 ? empty(frame, rows, "radiance of the next bounce") : sent;
-    lightLeaves(frame, common, result, sent.radiance);
+         next = count > 1 ? empty(frame, rows, "radiance of the next bounce") : sent;
+    lightLeaves(frame, common, result, earlier, sent.radiance);
     pullUp(frame, common, sent.radiance, result.radiance, false);
-    if (rows != nullptr) reflectDirect(frame, common, *rows, result, sent.outgoing);
-    for (int bounce = 0; bounce < bounces; ++bounce) {
-      const bool last = bounce + 1 == bounces, sky = bounce == 0 && frame.traits().environment;
+    if (rows != nullptr) reflectDirect(frame, common, *rows, result, earlier, sent.outgoing);
+    for (int bounce = 0; bounce < count; ++bounce) {
+      const bool last = bounce + 1 == count, sky = bounce == 0 && frame.traits().environment;
       gather(frame, common, {.environment = sky, .outgoing = rows != nullptr},
              {.adds = bounce > 0, .reflects = !last}, sent, result, result.irradiance, next.radiance);
       if (last) break;
@@ -159,17 +178,20 @@ class IlluminatePass : public Pass {
   }
 
   void lightLeaves(PassContext& frame, const shader::BindingSet& common, const ElementLight& result,
-                   const gpu::TextureRef& sent) {
+                   const ElementLight* earlier, const gpu::TextureRef& sent) {
     const LightBinding lights(shadow);
     const int count = lightCount(frame, lights);
     const bool lit = count > 0;
-    frame.dispatchList(frame.program(
-                           light_leaves::Variant{
-                               .lights = lit, .shadows = lit, .linked = result.directIrradiance != nullptr},
-                           light_leaves::Constants{.samplesPerSide = lightSamples}),
+    frame.dispatchList(frame.program(light_leaves::Variant{.lights = lit,
+                                                           .shadows = lit,
+                                                           .linked = result.directIrradiance != nullptr,
+                                                           .before = earlier != nullptr},
+                                     light_leaves::Constants{.samplesPerSide = lightSamples}),
                        {common, lights, light_leaves::directLight({count}),
                         light_leaves::albedos(elements->albedo, gpu::Sampling::nearest),
                         light_leaves::arrivingFromLights(result.directIrradiance, gpu::Sampling::nearest),
+                        light_leaves::arrivedBefore(earlier != nullptr ? earlier->irradiance : nullptr,
+                                                    gpu::Sampling::nearest),
                         light_leaves::reflectedImage(sent), light_leaves::radianceImage(result.radiance)},
                        static_cast<std::uint64_t>(elements->leafCount));
   }
@@ -194,9 +216,11 @@ class IlluminatePass : public Pass {
                        kTogether * static_cast<std::uint64_t>(elements->leafCount));
   }
 
-  /// Adds what the lobes of glossy leaves reflect of direct light, the first term of the sum over bounces.
+  /// Adds what the lobes of glossy leaves reflect of direct light, the first term of the sum over bounces,
+  /// and of the light that was sent in the frame before.
   void reflectDirect(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
-                     const ElementLight& result, const gpu::TextureRef& outgoing) {
+                     const ElementLight& result, const ElementLight* earlier,
+                     const gpu::TextureRef& outgoing) {
     using Variant = reflect_glossy::Variant;
     const LightBinding lights(shadow);
     const int count = lightCount(frame, lights);
@@ -205,6 +229,9 @@ class IlluminatePass : public Pass {
               count, {common, lights}, directions, result, outgoing);
     if (result.emission)
       reflectLinks(frame, common, rows, {}, {.adds = true}, {result.emission, nullptr}, result, outgoing);
+    if (earlier != nullptr)
+      reflectLinks(frame, common, rows, {.environment = frame.traits().environment, .outgoing = true},
+                   {.adds = true}, {earlier->radiance, earlier->outgoing}, result, outgoing);
     pullUpOutgoing(frame, common, rows, result.radiance, outgoing);
   }
 
