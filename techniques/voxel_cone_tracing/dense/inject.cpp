@@ -129,7 +129,8 @@ class Injection {
     sums.faces = faces;
     // Media lie beside the surfaces' bricks.
     if (!result.holdsMedia) result.occupied = occupied;
-    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    const gpu::BufferRef direct = before != nullptr ? directLight(frame, sums, brightest)
+                                                    : average(frame, *fragments_, sums, brightest);
     const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : occupied;
     const auto reflectLightOf = [&](const Grid& store) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
@@ -169,7 +170,8 @@ class Injection {
     // Every bounce changes all of the light.
     if (bounces.count() == 1 && before == nullptr) result.still = stillIn(frame, result);
     const VoxelSums sums = leafSums(frame, result);
-    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    const gpu::BufferRef direct = before != nullptr ? directLight(frame, sums, brightest)
+                                                    : average(frame, *fragments_, sums, brightest);
     if (before != nullptr) reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(*before, true));
     resolveLeaves(frame, result, sums, addsUp());
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
@@ -267,6 +269,26 @@ class Injection {
     light_.reflect(frame, list, sums, brightest, radiances);
     addUp(frame, list, sums, radiances);
     return radiances;
+  }
+
+  struct DirectKey {
+    gpu::BufferRef fragments, count, lights;
+    gpu::TextureRef depth;
+    float brightest;
+    bool operator==(const DirectKey&) const = default;
+  };
+  /// The direct light that fragments reflect, without sums; kept while they and the lights' views are the
+  /// same. A list with moving fragments stays the same buffer while they move.
+  gpu::BufferRef directLight(PassContext& frame, const VoxelSums& sums, float brightest) const {
+    const auto lit = [&] {
+      const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
+      light_.reflect(frame, *fragments_, sums, brightest, radiances);
+      return radiances;
+    };
+    if (fragments_->still != nullptr || light_.media.present()) return lit();
+    const ShadowMap shadow = light_.shadow.present() ? *light_.shadow : ShadowMap{};
+    const DirectKey key{fragments_->fragments, fragments_->count, shadow.lights, shadow.depth, brightest};
+    return frame.kept("direct light of fragments", key, lit);
   }
 
   /// Sums what fragments reflect of direct light and of the light that cones gather in the store.
