@@ -339,6 +339,10 @@ class SceneReport {
     // Names and command are those of this report, even if another one measured the point.
     StoredRun kept = checkpoint_.find(opened.identity.key()).value();
     record.created = kept.created;
+    record.node = kept.node;
+    record.seconds = kept.seconds;
+    record.before = kept.before;
+    record.after = kept.after;
     record.point = std::move(kept.point);
     nameAs(record.point, opened.point);
     for (const auto& [pass, work] : record.point.passWork)

@@ -80,6 +80,10 @@ std::vector<StoredRun> runsOf(const ReportRecord& report, const SceneRecord& sce
       run.identity.parameters.emplace(name,
                                       value.text());  // a point that was not measured has only its parameters
     run.created = record.created;
+    run.node = record.node;
+    run.seconds = record.seconds;
+    run.before = record.before;
+    run.after = record.after;
     run.version = LUMIVOX_VERSION;
     run.sceneName = scene.name;
     for (const PipelineRecord& pipeline : report.pipelines)

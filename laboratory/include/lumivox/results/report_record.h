@@ -34,6 +34,9 @@ struct PointRecord {
   std::string created;     ///< empty: it was not measured
   bool isDefault = false;  ///< every parameter as the text has it (with --set)
   std::vector<OutputImages> images;
+  std::string node;  ///< as in StoredRun
+  double seconds = 0.0;
+  MachineState before, after;
 };
 
 struct ReferenceRecord {
