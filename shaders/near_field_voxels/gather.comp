@@ -79,7 +79,7 @@ layout(binding = 10) uniform sampler3D radianceGrid;
 layout(std140, binding = 3) uniform Radiance { float radianceUnit; };
 #elif RADIANCE == RADIANCE_FACES
 layout(binding = 10) uniform sampler3D positiveX;  // by the outward normals of the faces
-layout(binding = 14) uniform sampler3D negativeX;
+layout(binding = 13) uniform sampler3D negativeX;
 layout(binding = 15) uniform sampler3D positiveY;
 layout(binding = 16) uniform sampler3D negativeY;
 layout(binding = 17) uniform sampler3D positiveZ;
