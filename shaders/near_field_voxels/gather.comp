@@ -12,6 +12,7 @@
 #pragma lumivox axis PLANES 0 1
 #pragma lumivox require !PLANES || BIT_RULE != printed
 #pragma lumivox require ARRIVING || OCCLUSION || FETCHES
+#pragma lumivox require !FETCHES || (!PLANES && RADIANCE != faces)
 #pragma lumivox require ARRIVING || RADIANCE == none
 #include "common/cones.glsl"
 #include "common/environment.glsl"

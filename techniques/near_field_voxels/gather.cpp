@@ -100,8 +100,9 @@ class GatherPass : public Pass {
                       "mean arriving radiance, E / pi, at the pixels that send rays, W/(sr m^2)"};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
                        "unoccluded share of their rays, in the first channel"};
-  Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
-                     "in r: texels of the stacks that the pixel's rays read"};
+  Out<Image> fetches{
+      this, "fetches", Contributes::nothing, Needs::nothing,
+      "in r: texels of the stacks that the pixel's rays read; 0 where these are not counted: with 'stop plane' and with 'directions'"};
 
   Reads readsFrom() const override {
     return Reads::camera | Reads::environment | Reads::geometry | Reads::history |
@@ -214,13 +215,20 @@ class GatherPass : public Pass {
     const bool fromMap = arriving.wanted() && readsMap(),
                stored = arriving.wanted() && radiance == Radiance::voxels,
                fromFaces = stored && directions.present(), fromVoxels = stored && !fromFaces;
+    // Each way to count doubles the program's variants; laws of the walk are those of boxes.
+    const bool counts = fetches.wanted() && !stop.atPlanes() && !fromFaces;
+    if (fetches.wanted()) {
+      fetches = Image{counted, false};
+      if (!counts) counted->clear(glm::vec4(0.0f));
+    }
+    if (!arriving.wanted() && !occlusion.wanted() && !counts) return;
     const gather::Variant variant{.arriving = arriving.wanted(),
                                   .radiance = fromMap      ? gather::Variant::radianceMap
                                               : fromFaces  ? gather::Variant::radianceFaces
                                               : fromVoxels ? gather::Variant::radianceVoxels
                                                            : gather::Variant::radianceNone,
                                   .occlusion = occlusion.wanted(),
-                                  .fetches = fetches.wanted(),
+                                  .fetches = counts,
                                   .mapLobes = fromMap && map->specular != nullptr,
                                   .planes = stop.atPlanes(),
                                   .bitRule = method.axis()};
@@ -238,7 +246,7 @@ class GatherPass : public Pass {
                              gather::lostSum(lost.current),
                              gather::occlusionImage(unoccluded),
                              gather::openSum(open.current),
-                             gather::fetchImage(counted),
+                             gather::fetchImage(counts ? counted : nullptr),
                              gather::earlierLight(earlier(light), gpu::Sampling::nearest),
                              gather::earlierLost(earlier(lost), gpu::Sampling::nearest),
                              gather::earlierOpen(earlier(open), gpu::Sampling::nearest)};
@@ -260,7 +268,6 @@ class GatherPass : public Pass {
     dispatchAll(frame, program, bound, parameters, fromMap ? map->lightCount : 0, samples);
     if (arriving.wanted()) arriving = Image{arrives};
     if (occlusion.wanted()) occlusion = Image{unoccluded, false};
-    if (fetches.wanted()) fetches = Image{counted, false};
   }
 
   /// Dispatches portions of the rays and, where there are very many, of the lights, to keep loops within what
