@@ -382,6 +382,55 @@ TEST_CASE(
   CHECK_FALSE(contains(place.read("scripts"), "--exclusive"));
 }
 
+TEST_CASE("waiting tells by accounting how many tasks ended and which did not end well") {
+  const Place place;
+  // Waiting tasks stand in one line; a cancelled one says by whom; parts of a job are no tasks.
+  const Instead sacct(
+      place, "sacct",
+      "printf '1_1|COMPLETED|60\\n1_2|CANCELLED by 1000|5\\n1_3|RUNNING|7\\n1_[4]|PENDING|0\\n'\n");
+  const Instead squeue(place, "squeue", "exit 0\n");
+  const Instead sbatch(place, "sbatch", "echo 1\n");
+  const CommandResult swept = place.run(
+      "sweep", {"fast"}, {"--store", place.file("all.sqlite"), "--tasks", "4", "--wait", "--slurm"});
+  INFO(swept.output << swept.errors);
+  CHECK(contains(swept.output, "2 of 4 tasks ended, 1 of them not well"));
+  CHECK(swept.exitCode == 1);
+}
+
+TEST_CASE("a battery and a report on a cluster, and a task that is sent back to the queue and goes on") {
+  const Place place;
+  const Cluster cluster(place / "cluster");
+  if (!cluster.whyNot.empty()) return skip(cluster.whyNot);
+  const std::string battery = "--quick --case no_triangles --pipeline '" +
+                              committedPipeline("direct_lighting") + "' --store " +
+                              place.quoted("cells.sqlite");
+  const CommandResult cells = typed("-q stress", Raw{battery + " --tasks 1 --wait --slurm"});
+  INFO(cells.output << cells.errors);
+  REQUIRE(cells.exitCode == 0);
+  CHECK(contains(typed("-q stress", Raw{battery + " --tasks 1 --wait --slurm"}).output,
+                 "0 of 1 cells are missing"));
+
+  const CommandResult page =
+      place.run("report", {"fast"}, {"-o", place.file("page.html"), "--tasks", "2", "--wait", "--slurm"});
+  INFO(page.output << page.errors);
+  REQUIRE(page.exitCode == 0);
+  CHECK(contains(place.read("page.html"), "</html>"));
+
+  // The queue takes a running task back by SIGTERM and starts it again.
+  setenv("LUMIVOX_TEST_HOLD_AT", "1", 1);
+  const CommandResult held =
+      place.run("sweep", {"slow"}, {"--store", place.file("slow.sqlite"), "--tasks", "1", "--slurm"});
+  unsetenv("LUMIVOX_TEST_HOLD_AT");
+  REQUIRE(held.exitCode == 0);
+  const std::string job = held.output.substr(held.output.find("job ") + 4),
+                    number = job.substr(0, job.find(':'));
+  const auto state = [&] { return runCommand("squeue -h -j " + number + " -o %t 2>&1").output; };
+  REQUIRE(becomes([&] { return contains(state(), "R"); }));
+  REQUIRE(runCommand("scontrol requeue " + number + "_1 2>&1").exitCode == 0);
+  REQUIRE(becomes([&] { return contains(state(), "PD"); }));
+  runCommand("scancel " + number);
+}
+
 TEST_CASE("a sweep, a reference and a killed array on a cluster of one node") {
   const Place place;
   const Cluster cluster(place / "cluster");
