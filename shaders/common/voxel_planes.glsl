@@ -1,7 +1,7 @@
 // The surface within a voxel: up to two planes. The surface of a plane is its part behind the other one. Lengths are in voxels, offsets from
 // the voxel's centre along the normal.
-// Made by shaders/near_field_voxels/planes_resolve.comp. Included after common/bit_grid.glsl with PLANES 1, it also tells that file's walks
-// where a ray ends in an occupied voxel. C++ side: RayStop in techniques/near_field_voxels/planes.h.
+// Made by shaders/toolkit/planes_resolve.comp. Included after common/bit_grid.glsl with PLANES 1, it also tells that file's walks
+// where a ray ends in an occupied voxel. C++ side: RayStop in framework/include/lumivox/toolkit/ray_stop.h.
 #ifndef LUMIVOX_VOXEL_PLANES
 #define LUMIVOX_VOXEL_PLANES
 

@@ -1,10 +1,14 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.3, Eq. 3: the light that arrives at the centre of each voxel from all sides, by ray marching.
 // OF light: the radiance that voxels emit; OF openness: 1 for rays without a hit within their reach, 0 for the others (Sec. 3.5, Eq. 6).
-// WALK steps: tests fixed steps; WALK exact: tests every voxel on the ray (common/bit_grid.glsl). LISTED: only the voxels of a list.
+// WALK steps: tests fixed steps; WALK exact: tests every voxel on the ray (common/bit_grid.glsl). PLANES: as in that file.
+// LISTED: only the voxels of a list.
 #pragma lumivox axis OF light openness
 #pragma lumivox axis WALK steps exact
 #pragma lumivox axis LISTED 0 1
+#pragma lumivox axis PLANES 0 1
+#pragma lumivox require !PLANES || WALK == exact
+#pragma lumivox require !PLANES || OF == openness
 #pragma lumivox require BIT_RULE == hierarchy
 #if OF == OF_LIGHT
 #include "common/environment.glsl"
@@ -57,6 +61,9 @@ layout(std430, binding = 0) readonly buffer ListCount { uint listed; };
 layout(std430, binding = 1) readonly buffer List { uint list[]; };
 #endif
 #include "common/bit_grid.glsl"
+#if PLANES
+#include "common/voxel_planes.glsl"
+#endif
 
 shared vec4 found[gl_WorkGroupSize.x * kVolumes];
 

@@ -12,6 +12,7 @@
 #include "lumivox/toolkit/counts.h"
 #include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "lumivox/toolkit/ray_stop.h"
 #include "lumivox/toolkit/volume_room.h"
 #include "volume.h"
 
@@ -132,12 +133,14 @@ class Marching : public Pass {
     return {.of = of,
             .walk = walk == Walk::exact ? march::Variant::walkExact : march::Variant::walkSteps,
             .listed = from.voxels != nullptr,
+            .planes = false,
             .bitRule = march::Variant::bitRuleHierarchy};
   }
 
-  /// Sends all rays of all voxels, in enough dispatches to keep loops within what drivers run.
+  /// Sends all rays of all voxels, in enough dispatches to keep loops within what drivers run. `moreTurns`:
+  /// bound for what a ray's loops turn beyond those of 'walk'.
   void sendRays(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
-                march::Rays parameters, const Begins& from) const {
+                march::Rays parameters, const Begins& from, std::int64_t moreTurns = 0) const {
     const int pairs = (rays + 1) / 2, rounds = (pairs + kTogether - 1) / kTogether;
     // Light travels from one end of the volume to the other; openness has a reach.
     const float way = std::min(parameters.reach, glm::length(glm::vec3(grid().resolution)));
@@ -153,7 +156,7 @@ class Marching : public Pass {
     if (walk == Walk::exact) all.add(shader::SampledSlot{"bitStacks"}(bits->stacks, gpu::Sampling::nearest));
     if (opacity.present()) all.add(march::opacity(opacity->opacity, gpu::Sampling::nearest));
     if (from.voxels) all.add(shader::BindingSet{march::listCount(from.count), march::list(from.voxels)});
-    forEachPortion(rounds, 2 * (ofRay + 1), [&](int first, int count) {
+    forEachPortion(rounds, 2 * (ofRay + moreTurns + 1), [&](int first, int count) {
       parameters.firstPair = first * kTogether;
       parameters.pairsAtOnce = count * kTogether;
       const shader::BindingSet dispatched{all, march::rays(parameters)};
@@ -286,14 +289,21 @@ class OccludePass : public Marching {
       within(0.0f, 1e9f),
       "m",
       "distance within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
+  RayStop stop{this};
   Out<ShGrid> visibility{
       this, "visibility", Contributes::nothing, Needs::triangles,
       "visibility over the directions from each voxel: 0 where a ray hits within 'distance', else 1"};
 
   Reads readsFrom() const override { return Reads::geometry; }
+  bool uses(const InBase& input) const override {
+    return stop.isInput(input) ? stop.atPlanes() : Marching::uses(input);
+  }
+  std::string checkParameters() const override { return stop.check(walk == Walk::steps, "walk", "steps"); }
 
   void run(PassContext& frame) override {
     checkGrids();
+    const VoxelPlanes planes =
+        stop.atPlanes() ? stop.planes(frame, *bits, "imperfect_volumes.occlude") : VoxelPlanes();
     const Begins from = begins(frame);
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;
@@ -305,8 +315,10 @@ class OccludePass : public Marching {
     const float reach = distance > 0.0f
                             ? float(distance)
                             : static_cast<float>(ambientOcclusionDistance(frame.snapshot().bounds));
-    sendRays(frame, frame.program(variant(from, march::Variant::ofOpenness), constants()),
-             {march::openImage(open)}, {.reach = reach / grid().voxelSize}, from);
+    march::Variant chosen = variant(from, march::Variant::ofOpenness);
+    chosen.planes = stop.atPlanes();
+    sendRays(frame, frame.program(chosen, constants()), {march::openImage(open), planes},
+             {.reach = reach / grid().voxelSize}, from, stop.atPlanes() ? stop.turns(*bits) : 0);
     visibility = result;
   }
 };

@@ -11,9 +11,9 @@
 #include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "lumivox/toolkit/ray_stop.h"
 #include "near_field_voxels_shaders.h"
 #include "passes.h"
-#include "planes.h"
 
 namespace lumivox::near_field_voxels {
 
@@ -116,7 +116,8 @@ class GatherPass : public Pass {
            (arriving.wanted() && radiance == Radiance::voxels);
   }
   std::string checkParameters() const override {
-    const std::string ofStop = stop.check(method);
+    const std::string ofStop =
+        stop.check(method.axis() == gather::Variant::bitRulePrinted, "method", "printed");
     return ofStop.empty() ? projection.check() : ofStop;
   }
 
@@ -237,10 +238,11 @@ class GatherPass : public Pass {
     const auto earlier = [&](const History<gpu::TextureRef>& sum) -> const gpu::TextureRef& {
       return sum.previous ? sum.previous : gbuffer->position;
     };
+    const VoxelPlanes planes = stop.planes(frame, *bits, "near_field_voxels.gather");
     shader::BindingSet bound{GBufferBinding(*gbuffer),
                              EnvironmentBinding(frame),
                              method.binding(frame, *bits),
-                             stop.binding(frame, *bits, "near_field_voxels.gather"),
+                             planes,
                              gather::arrivingImage(arrives),
                              gather::lightSum(light.current),
                              gather::lostSum(lost.current),

@@ -1,7 +1,7 @@
 // Traces given rays, for tests and measurements.
+#include "lumivox/toolkit/ray_stop.h"
 #include "near_field_voxels_shaders.h"
 #include "passes.h"
-#include "planes.h"
 
 namespace lumivox::near_field_voxels {
 
@@ -22,7 +22,9 @@ class ProbePass : public Pass {
                      "in r: texels of the stacks that were read"};
 
   bool uses(const InBase& input) const override { return !stop.isInput(input) || stop.atPlanes(); }
-  std::string checkParameters() const override { return stop.check(method); }
+  std::string checkParameters() const override {
+    return stop.check(method.axis() == probe::Variant::bitRulePrinted, "method", "printed");
+  }
 
   void run(PassContext& frame) override {
     const gpu::TextureDescription& rays = origins->texture->description();
@@ -30,12 +32,13 @@ class ProbePass : public Pass {
         .format = gpu::Format::rgba32f, .width = rays.width, .height = rays.height};
     hits = Image{frame.texture(images, "voxels that rays meet"), false};
     fetches = Image{frame.texture(images, "texels that rays read"), false};
-    frame.dispatch(frame.program(probe::Variant{.planes = stop.atPlanes(), .bitRule = method.axis()}),
-                   {method.binding(frame, *bits), stop.binding(frame, *bits, "near_field_voxels.probe"),
-                    probe::origins(origins->texture, gpu::Sampling::nearest),
-                    probe::directions(directions->texture, gpu::Sampling::nearest),
-                    probe::voxelImage(hits->texture), probe::fetchImage(fetches->texture)},
-                   {rays.width, rays.height, 1});
+    const VoxelPlanes planes = stop.planes(frame, *bits, "near_field_voxels.probe");
+    frame.dispatch(
+        frame.program(probe::Variant{.planes = stop.atPlanes(), .bitRule = method.axis()}),
+        {method.binding(frame, *bits), planes, probe::origins(origins->texture, gpu::Sampling::nearest),
+         probe::directions(directions->texture, gpu::Sampling::nearest), probe::voxelImage(hits->texture),
+         probe::fetchImage(fetches->texture)},
+        {rays.width, rays.height, 1});
   }
 };
 

@@ -161,8 +161,8 @@ class VolumeOnHost {
 /// How the volume is voxelized, and further lines for its passes.
 struct Made {
   bool points = true, reprojected = true;
-  /// Further lines: for the passes that trace rays, for all that read neighbours, and for `march` alone.
-  std::string ofRays = {}, ofReading = {}, ofLight = {};
+  /// Further lines: for all that read neighbours, and for `march` alone.
+  std::string ofReading = {}, ofLight = {};
 };
 
 /// The committed pipeline of light and occlusion with such a volume.
@@ -190,7 +190,7 @@ inline Pipeline volumePipeline(const Made& made) {
     for (const char* name : {"  param points", "  param adaptive", "  param density"}) cut(name, "\n");
   }
   for (const char* pass : {"imperfect_volumes.march {\n", "imperfect_volumes.occlude {\n"})
-    replace(pass, pass + made.ofRays + made.ofReading);
+    replace(pass, pass + made.ofReading);
   replace("imperfect_volumes.march {\n", "imperfect_volumes.march {\n" + made.ofLight);
   replace("imperfect_volumes.gather {\n", "imperfect_volumes.gather {\n" + made.ofReading);
   return Pipeline::parse(text, committedText.file);

@@ -4,9 +4,22 @@
 #include <cstdint>
 #include <string>
 
-#include "passes.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/ports/binary_grid.h"
+#include "lumivox/pipeline/ports/voxel_fragments.h"
 
-namespace lumivox::near_field_voxels {
+namespace lumivox {
+
+/// The planes of the surface within each occupied voxel, for shaders. They last as long as this.
+class VoxelPlanes : public shader::BindingSet {
+ public:
+  VoxelPlanes() = default;  ///< rays end at boxes, without planes
+  VoxelPlanes(gpu::TextureRef slots, gpu::BufferRef planes);
+
+ private:
+  gpu::TextureRef slots_;
+  gpu::BufferRef planes_;
+};
 
 /// The end of rays in occupied voxels: a parameter and an input of a pass.
 class RayStop {
@@ -14,11 +27,12 @@ class RayStop {
   explicit RayStop(Pass* pass);
   bool atPlanes() const { return stop_ == Stop::plane; }
   bool isInput(const InBase& input) const { return &input == &fragments_; }
-  /// What is wrong with the parameters, in words, or empty.
-  std::string check(const RayMethod& method) const;
-  /// With planes, makes them from the fragments and binds them. Error where the fragments are missing or on
+  /// What is wrong with the parameters, in words, or empty. `boxesOnly`: the pass follows its rays in a way
+  /// that ends at boxes; `parameter` and `value` choose that way.
+  std::string check(bool boxesOnly, const char* parameter, const char* value) const;
+  /// With planes, makes them from the fragments. Error where the fragments are missing or on
   /// another grid than the bits. `pass`: whose input they are.
-  shader::BindingSet binding(PassContext& frame, const BinaryGrid& bits, const std::string& pass);
+  VoxelPlanes planes(PassContext& frame, const BinaryGrid& bits, const std::string& pass);
   /// How far the end of a ray may lie from the surface that a map shows, in the voxels' own measure
   /// (BackProjection::binding()): planes are nearer to it than boxes.
   float voxelsOfMap() const { return atPlanes() ? 0.5f : 1.0f; }
@@ -32,4 +46,4 @@ class RayStop {
   std::uint64_t room_ = 0;  ///< number of slots: a guess, or what earlier frames needed
 };
 
-}  // namespace lumivox::near_field_voxels
+}  // namespace lumivox

@@ -1,18 +1,29 @@
 // Planes of the surface within each occupied voxel, from sums over its fragments that are the same in any
 // order.
-#include "planes.h"
+#include "lumivox/toolkit/ray_stop.h"
 
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
+#include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/bit_grid.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/voxel_slots.h"
-#include "near_field_voxels_shaders.h"
+#include "toolkit_shaders.h"
 
-namespace lumivox::near_field_voxels {
+namespace lumivox {
 
-namespace code = shaders::near_field_voxels;
+namespace {
+
+namespace code = shaders::toolkit;
+
+}  // namespace
+
+VoxelPlanes::VoxelPlanes(gpu::TextureRef slots, gpu::BufferRef planes)
+    : BindingSet{shader::StorageSlot{"VoxelPlanes"}(planes),
+                 shader::SampledSlot{"planeSlots"}(slots, gpu::Sampling::nearest)},
+      slots_(std::move(slots)),
+      planes_(std::move(planes)) {}
 
 RayStop::RayStop(Pass* pass)
     : stop_(
@@ -22,12 +33,12 @@ RayStop::RayStop(Pass* pass)
       fragments_(pass, "fragments", Presence::optional,
                  "with 'stop plane': the surface samples that 'bits' are made from") {}
 
-std::string RayStop::check(const RayMethod& method) const {
-  if (!atPlanes() || method.axis() != shaders::near_field_voxels::gather::Variant::bitRulePrinted) return {};
-  return "'stop plane' with 'method printed'; expected 'stop box', or another method";
+std::string RayStop::check(bool boxesOnly, const char* parameter, const char* value) const {
+  if (!atPlanes() || !boxesOnly) return {};
+  return fmt::format("'stop plane' with '{0} {1}'; expected 'stop box', or another {0}", parameter, value);
 }
 
-shader::BindingSet RayStop::binding(PassContext& frame, const BinaryGrid& bits, const std::string& pass) {
+VoxelPlanes RayStop::planes(PassContext& frame, const BinaryGrid& bits, const std::string& pass) {
   if (!atPlanes()) return {};
   if (!fragments_.present())
     throw Error(fmt::format("{}: 'stop plane' reads 'fragments'; expected it to be connected", pass));
@@ -49,8 +60,7 @@ shader::BindingSet RayStop::binding(PassContext& frame, const BinaryGrid& bits, 
                   *fragments_);
   forEachSlot(frame, frame.program(code::planes_resolve::kProgram),
               {code::planes_resolve::planeSums(sums), code::planes_resolve::voxelPlanes(planes)}, slots);
-  return {shader::StorageSlot{"VoxelPlanes"}(planes),
-          shader::SampledSlot{"planeSlots"}(slots.numbers, gpu::Sampling::nearest)};
+  return {slots.numbers, planes};
 }
 
 std::int64_t RayStop::turns(const BinaryGrid& bits) const {
@@ -60,4 +70,4 @@ std::int64_t RayStop::turns(const BinaryGrid& bits) const {
   return turnsOfBitStep(bits) * bits.grid.resolution.z;
 }
 
-}  // namespace lumivox::near_field_voxels
+}  // namespace lumivox
