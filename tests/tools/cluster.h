@@ -50,6 +50,11 @@ class Cluster {
     if (!up) whyNot = "slurmd does not come up here: " + runCommand("tail -3 " + file("slurmd.log")).output;
   }
   ~Cluster() {
+    // Jobs outlive the daemons that started them.
+    if (whyNot.empty()) {
+      runCommand("scancel --signal=KILL --full --user=$(id -un) 2>&1; scancel --user=$(id -un) 2>&1");
+      becomes([] { return runCommand("squeue --noheader").output.empty(); });
+    }
     for (auto process = processes_.rbegin(); process != processes_.rend(); ++process) {
       kill(*process, SIGTERM);
       for (int i = 0; i < 100 && waitpid(*process, nullptr, WNOHANG) == 0; ++i) usleep(50'000);
