@@ -78,16 +78,18 @@ TEST_CASE("a glossy surface in the volume also sends what its lobe reflects, unl
   // - 1.
   constexpr std::uint32_t kSpecular = 128, kStep = 8;
   const double exponent = std::exp2((kStep - 1.0) * 16.0 / 26.0) - 1.0, specular = kSpecular / 255.0;
-  for (const double cosine : {1.0, 0.5}) {
-    Scene scene = sunAlong({{std::sqrt(1.0 - cosine * cosine), 0.0, -cosine}});
-    scene.materials.front().specular = glm::vec3(0.5f);
-    FragmentData square = squareAt({1.25, 1.25, 1.25}, {0, 0, 1});
-    square.emission = kSpecular | kSpecular << 8 | kSpecular << 16 | kStep << 24;
-    const double share = reflectedShare(exponent, cosine);
-    for (const bool lobes : {true, false})
-      CHECK(sent(injected(scene, {square}, {{"lobes", lobes ? "diffuse" : "none"}}), {2, 2, 2}, {0, 0, 1}) ==
-            Approx((0.5 + (lobes ? specular * share : 0.0)) * cosine / kPi).epsilon(0.01));
-  }
+  for (const double cosine : {1.0, 0.5})
+    for (const double side : {1.0, -1.0}) {
+      Scene scene = sunAlong({{std::sqrt(1.0 - cosine * cosine), 0.0, -side * cosine}});
+      scene.materials.front().specular = glm::vec3(0.5f);
+      FragmentData square = squareAt({1.25, 1.25, 1.25}, {0, 0, 1});
+      square.emission = kSpecular | kSpecular << 8 | kSpecular << 16 | kStep << 24;
+      const double share = reflectedShare(exponent, cosine);
+      for (const bool lobes : {true, false})
+        CHECK(sent(injected(scene, {square}, {{"lobes", lobes ? "diffuse" : "none"}}), {2, 2, 2},
+                   {0, 0, side}) ==
+              Approx((0.5 + (lobes ? specular * share : 0.0)) * cosine / kPi).epsilon(0.01));
+    }
 }
 
 TEST_CASE("direct light that fragments bring along is that of the side seen, and lights shine on the other") {

@@ -1,4 +1,5 @@
 // What glossy surfaces send on from voxels, whose stores hold one light for all directions before a surface.
+#include "lumivox/toolkit/light_samples.h"
 #include "support/against_reference.h"
 #include "support/cones.h"
 #include "support/kept_table.h"
@@ -21,13 +22,13 @@ struct LitFloor {
   VoxelFragments fragments;
   glm::ivec3 middle{};
 
-  LitFloor(float exponent, double cosine) : arriving(kIrradiance * cosine) {
+  LitFloor(float exponent, double cosine, bool fromBelow = false) : arriving(kIrradiance * cosine) {
     SceneBuilder builder;
     builder.quad({-1, 0.03, -1}, {0, 0, 2}, {2, 0, 0},
                  builder.phong(static_cast<float>(kDiffuse), static_cast<float>(kSpecular), exponent));
     builder.quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.0f));  // as high as it is wide
     builder.light(LightKind::directional, glm::vec3(static_cast<float>(kIrradiance)), {},
-                  {std::sqrt(1.0 - cosine * cosine), -cosine, 0});
+                  {std::sqrt(1.0 - cosine * cosine), fromBelow ? cosine : -cosine, 0});
     scene = builder.scene;
     fragments = fragmentsIn(scene, {{"resolution", kVoxels}});
     for (const FragmentData& fragment : fragmentsOf(fragments))
@@ -60,6 +61,21 @@ TEST_CASE("a floor's voxels hold what both of its lobes reflect, and without lob
         CHECK(faceAt(six, kLowerY, 0, floor.middle).r == 0.0f);
       }
     }
+}
+
+TEST_CASE("the back of a glossy sheet sends on what its lobe reflects, where light shines on it") {
+  // Without shadows: the black floor below stands in the way of the light.
+  const LitFloor sheet(20.0f, 0.7, /*fromBelow=*/true);
+  LonePass inject("voxel_cone_tracing.inject_directional", sheet.scene);
+  ShadowMap unshadowed = shadowsOf(sheet.scene);
+  std::vector<LightSampleData> samples = unshadowed.lights->downloadValues<LightSampleData>();
+  for (LightSampleData& sample : samples) sample.firstView = -1;
+  unshadowed.lights = bufferOf(samples);
+  inject.in("fragments", sheet.fragments).in("shadow", unshadowed);
+  const auto six = inject.out<DirectionalRadianceGrid>("radiance");
+  const double both = LitFloor::kDiffuse + LitFloor::kSpecular * reflectedShare(20.0, 0.7);
+  CHECK(faceAt(six, kLowerY, 0, sheet.middle).r == Approx(both * sheet.arriving / kPi).epsilon(0.02));
+  CHECK(faceAt(six, kHigherY, 0, sheet.middle).r == 0.0f);
 }
 
 TEST_CASE("one grid and an octree hold the same light of a glossy floor as six grids") {
