@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "support/scene_builder.h"
 #include "support/passes.h"
+#include "support/scene_builder.h"
 
 namespace lumivox::test {
 

@@ -259,7 +259,8 @@ TEST_CASE("table: errors by occlusion and its variants", "[.]") {
                                                     {"glossy", 3, 0.01, 0.02},
                                                     {"ratio of glossy", 3, 0.01}});
   for (const char* name :
-       {"cornell", "corridor", "stress/stacked_plates", "cornell_glossy", "spinning_box", "arcade"})
+       {"cornell", "corridor", "stress/stacked_plates", "cornell_glossy", "spinning_box", "arcade"}) {
+    std::map<std::string, Against> found;
     for (const char* occlusion : {"visibility=directions", "occlusion=off", "combine=product", "combine=sum",
                                   "combine=nearest", "combine=mask"}) {
       std::vector<std::string> settings{occlusion};
@@ -267,7 +268,18 @@ TEST_CASE("table: errors by occlusion and its variants", "[.]") {
       const Errors errors = errorsOn(name, settings);
       table.row(std::string(name) + ", " + occlusion,
                 {errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio});
+      found[occlusion] = errors.diffuse;
     }
+    // Every further disc that counts takes light away; the sum counts those in one line fully, a product
+    // less.
+    CAPTURE(name);
+    CHECK(found["occlusion=off"].ratio > found["combine=nearest"].ratio);
+    CHECK(found["combine=nearest"].ratio > found["combine=mask"].ratio);
+    CHECK(found["combine=nearest"].ratio > found["combine=product"].ratio);
+    CHECK(found["combine=mask"].ratio > found["combine=sum"].ratio);
+    CHECK(found["combine=product"].ratio > found["combine=sum"].ratio);
+    CHECK(found["visibility=directions"].rmse < found["occlusion=off"].rmse);
+  }
 }
 
 TEST_CASE("table: the double occlusion of the bunny", "[.]") {
@@ -292,11 +304,18 @@ TEST_CASE("table: lobes beside all lights, by exponent and points", "[.]") {
                                                 {"ratio", 2, 0.01},
                                                 {"error with exponent_limit none", 3, 0.01, 0.02},
                                                 {"ratio with it", 2, 0.01, 0.02}});
+  std::map<float, double> before;  // error with fewer points, by exponent
   for (const char* points : {"points=512", "points=2048", "points=8192"})
     for (const float exponent : {1.0f, 10.0f, 40.0f, 100.0f, 1e3f, 1e4f, 1e5f}) {
       const Against limited = ofExponent(exponent, {points}), free = ofExponent(exponent, {points}, false);
       table.row(std::string(points) + ", exponent " + std::to_string(static_cast<int>(exponent)),
                 {limited.rmse, limited.ratio, free.rmse, free.ratio});
+      CAPTURE(points, exponent);
+      // The bound widens what points cannot resolve: it keeps the energy, and more points err less.
+      CHECK(limited.ratio == Approx(1.0).margin(0.1));
+      CHECK(std::abs(limited.ratio - 1.0) <= std::abs(free.ratio - 1.0) + 0.03);
+      if (before.contains(exponent)) CHECK(limited.rmse < before[exponent]);
+      before[exponent] = limited.rmse;
     }
 }
 
@@ -305,9 +324,14 @@ TEST_CASE("table: interpolation by points and lights", "[.]") {
   KeptTable table("virtual_area_lights.interpolation", {{"error", 3, 0.005, 0.02}, {"ratio", 3, 0.005}});
   for (const char* lights : {"lights=1024", "lights=4096", "lights=16384"}) {
     const std::vector<Against> found = ofPoints(points, lights);
-    for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t i = 0; i < points.size(); ++i) {
       table.row(std::string(lights) + ", " + std::to_string(points[i]) + " points",
                 {found[i].rmse, found[i].ratio});
+      CAPTURE(lights, points[i]);
+      CHECK(found[i].ratio == Approx(1.0).margin(0.025));
+      if (i > 0) CHECK(found[i].rmse < found[i - 1].rmse + 0.002);
+    }
+    CHECK(found.back().rmse < 0.3 * found.front().rmse);
   }
 }
 
@@ -316,9 +340,13 @@ TEST_CASE("table: bumps and flicker", "[.]") {
   KeptTable table("virtual_area_lights.bumps",
                   {{"error, averaged", 3, 0.005, 0.02}, {"plain", 3, 0.005, 0.02}});
   table.row("lit by a patch", {one.averaged, one.plain});
+  CHECK(one.averaged <= 0.5 * one.plain);
   for (const char* tilt : {"0.0", "0.3", "0.6", "1.0"}) {
     const Kept all = bumps(dome(std::stof(tilt)));
     table.row(std::string("lit by a dome of tilt ") + tilt, {all.averaged, all.plain});
+    CAPTURE(tilt);
+    // Under an even dome `plain` interpolates what hardly changes.
+    CHECK(all.averaged <= (std::stof(tilt) > 0.0f ? 1.3 * all.plain : 0.05));
   }
   KeptTable flicker("virtual_area_lights.flicker",
                     {{"flicker", 4, 0.001, 0.05}, {"reflective shadow maps", 4, 0.001, 0.05}});
@@ -327,6 +355,7 @@ TEST_CASE("table: bumps and flicker", "[.]") {
     const double ours = flickerOn(scene, pipeline("virtual_area_lights"), {}, 6),
                  theirs = flickerOn(scene, pipeline("reflective_shadow_maps"), {"samples=1024"}, 6);
     flicker.row(name, {ours, theirs});
+    CHECK(ours <= theirs);
   }
 }
 
@@ -346,14 +375,30 @@ TEST_CASE("table: shares of the light that no virtual area light holds", "[.]") 
     const double all = meanOf(scene, "one_bounce_diffuse"), noSky = meanOf(without, "one_bounce_diffuse"),
                  diffuse = meanOf(dull, "one_bounce_diffuse");
     table.row(name, {1.0 - noSky / all, (noSky - diffuse) / all});
+    CAPTURE(name);
+    // The same paths without a sky bring the same light, to the bit, where there was none.
+    if (scene.environment == glm::vec3(0.0f))
+      CHECK(noSky == all);
+    else
+      CHECK(noSky < all);
+    CHECK(diffuse > 0.0);
   }
 }
 
 TEST_CASE("table: discs in line on the bunny", "[.]") {
   KeptTable table("virtual_area_lights.bunny", {{"error", 3, 0.01, 0.02}, {"ratio", 3, 0.01}});
+  std::map<std::string, double> light;
   for (const char* combine : {"occlusion=off", "combine=product", "combine=nearest", "combine=mask"})
     for (const char* points : {"points=1024", "points=4096"}) {
       const Against found = errorsOn(committed("bunny"), {combine, points, "visibility=sphere"}).diffuse;
       table.row(std::string(combine) + ", " + points, {found.rmse, found.ratio});
+      light[std::string(combine) + points] = found.ratio;
     }
+  // Discs in line take more than the nearest alone; counted once or twice, they are not what is lost.
+  for (const std::string points : {"points=1024", "points=4096"}) {
+    CAPTURE(points);
+    CHECK(light["occlusion=off" + points] > light["combine=nearest" + points]);
+    CHECK(light["combine=nearest" + points] > light["combine=mask" + points]);
+    CHECK(light["combine=product" + points] == Approx(light["combine=mask" + points]).epsilon(0.01));
+  }
 }

@@ -238,7 +238,8 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   CHECK(table["scale"] == 0.5);
   // Half of 32 and of 64 voxels, 64 x 48 pixels, and another pipeline: three set-ups for all rows.
   REQUIRE(table["set_ups"].size() == 3);
-  CHECK(contains(table["set_ups"][0].get<std::string>(), "cones=1 lobes=diffuse resolution=16, 32 x 24 pixels"));
+  CHECK(contains(table["set_ups"][0].get<std::string>(),
+                 "cones=1 lobes=diffuse resolution=16, 32 x 24 pixels"));
   CHECK(contains(table["set_ups"][1].get<std::string>(), "resolution=32"));
 
   CHECK(rowNamed(table, "gather")["verdict"] == "reference");
