@@ -211,31 +211,17 @@ int shareReport(const ReportCommand& command, const Commands& commands, SweepOpt
   const SharedPlan plan = planSweep(
       *device, techniques, points, [&](const std::filesystem::path& file) { return global.loadScene(file); },
       share.tasks, share.taskSeconds);
-  std::size_t missing = 0;
-  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
-  print(fmt::format("{} of {} points are missing in {}\n", missing, plan.points, points.into.string()));
-  if (plan.shares.empty()) return kGood;
-  if (!share.slurm) {
-    plan.write(share.points);
-    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
-    return kGood;
-  }
-  std::error_code ignored;
-  const std::string into = inSingleQuotes(std::filesystem::absolute(points.into, ignored).string());
-  const bool mixed = holdsOtherVersions(ResultsStore(points.into), techniques);
-  SharedWork work;
-  work.name = "report";
-  work.beside = points.into;
-  work.exclusive = work.mergeExclusive = true;
-  work.dropped = {"--store", "-o", "--out"};
-  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
-  work.merge = [&](const std::string& program, const std::string& typed, const std::string& folder) {
-    return fmt::format("{} || exit\nexec {}{}\n", mergeOfTasks(program, into, mixed, folder), program, typed);
-  };
-  return submitShares(commands, share, work, plan.shares.size(),
-                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
-             ? kGood
-             : kNotGood;
+  return sharePlan(
+      commands, share, plan,
+      {.name = "report",
+       .units = "points",
+       .into = points.into,
+       .mixed = [&] { return holdsOtherVersions(ResultsStore(points.into), techniques); },
+       .exclusive = true,
+       .mergeExclusive = true,
+       .dropped = {"--store", "-o", "--out"},
+       .afterMerge = [](const std::string& program, const std::string& typed,
+                        const std::string&) { return fmt::format("exec {}{}\n", program, typed); }});
 }
 
 int report(const ReportCommand& command, const Commands& commands) {

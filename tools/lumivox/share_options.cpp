@@ -82,17 +82,6 @@ std::string shellWords(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string mergeOfTasks(const std::string& program, const std::string& into, bool mixed,
-                         const std::string& folder) {
-  return fmt::format("{} results merge --store {}{} {}/*.sqlite", program, into, mixed ? " --mixed" : "",
-                     folder);
-}
-
-std::string storeOfTask(const std::string& folder, const std::string& into) {
-  return fmt::format("--store {0}/\"$SLURM_ARRAY_TASK_ID\".sqlite --into {1} --points {0}/plan.txt", folder,
-                     into);
-}
-
 bool submitShares(const Commands& commands, const ShareOptions& options, const SharedWork& work,
                   std::size_t tasks, const std::function<void(const std::filesystem::path&)>& write) {
   SlurmArray array;
@@ -127,6 +116,45 @@ bool submitShares(const Commands& commands, const ShareOptions& options, const S
   if (std::filesystem::exists(merged, ignored)) text += readFile(merged);
   print(text);
   return state.failed == 0;
+}
+
+void tellMissing(const SharedPlan& plan, const std::string& units, const std::filesystem::path& into) {
+  std::size_t missing = 0;
+  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
+  print(fmt::format("{} of {} {} are missing in {}\n", missing, plan.points, units, into.string()));
+}
+
+int sharePlan(const Commands& commands, const ShareOptions& options, const SharedPlan& plan,
+              const SharedStore& store) {
+  tellMissing(plan, store.units, store.into);
+  if (plan.shares.empty()) return kGood;
+  if (!options.slurm) {
+    plan.write(options.points);
+    print(fmt::format("{} shares; {}\n", plan.shares.size(), options.points.string()));
+    return kGood;
+  }
+  std::error_code ignored;
+  const std::string into = inSingleQuotes(std::filesystem::absolute(store.into, ignored).string());
+  const bool mixed = store.mixed();
+  SharedWork work;
+  work.name = store.name;
+  work.beside = store.into;
+  work.exclusive = store.exclusive;
+  work.mergeExclusive = store.mergeExclusive;
+  work.dropped = store.dropped;
+  work.task = [&](const std::string& folder, std::size_t) {
+    return fmt::format("--store {0}/\"$SLURM_ARRAY_TASK_ID\".sqlite --into {1} --points {0}/plan.txt", folder,
+                       into);
+  };
+  work.merge = [&](const std::string& program, const std::string& typed, const std::string& folder) {
+    return fmt::format("{} results merge --store {}{} {}/*.sqlite || exit\n{}", program, into,
+                       mixed ? " --mixed" : "", folder,
+                       store.afterMerge ? store.afterMerge(program, typed, into) : "");
+  };
+  return submitShares(commands, options, work, plan.shares.size(),
+                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
+             ? kGood
+             : kNotGood;
 }
 
 }  // namespace lumivox::command

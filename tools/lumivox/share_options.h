@@ -46,18 +46,30 @@ struct SharedWork {
   std::vector<std::string> dropped;  ///< options with a value that tasks do not get, besides those of sharing
 };
 
-/// The command that merges what tasks have stored: those of one version, into a store that may hold earlier
-/// ones. `program`, `into` and `folder` are quoted.
-std::string mergeOfTasks(const std::string& program, const std::string& into, bool mixed,
-                         const std::string& folder);
-
-/// What a task is told besides its share: a store of its own in the quoted folder, that of the merge, its
-/// plan.
-std::string storeOfTask(const std::string& folder, const std::string& into);
-
 /// Submits a command's array of `tasks`, whose plan `write` puts into the folder of the job; says where, and
 /// with --wait follows it. Returns whether the tasks went well, as far as they were waited for.
 bool submitShares(const Commands& commands, const ShareOptions& options, const SharedWork& work,
                   std::size_t tasks, const std::function<void(const std::filesystem::path& folder)>& write);
+
+/// What of a command is shared whose results lie in a store.
+struct SharedStore {
+  std::string name;             ///< of the command
+  std::string units;            ///< what is missing, in the plural: "points"
+  std::filesystem::path into;   ///< the store that the shares are merged into
+  std::function<bool()> mixed;  ///< whether it holds results of earlier versions; asked before a submission
+  bool exclusive = false, mergeExclusive = false;
+  std::vector<std::string> dropped;  ///< as in SharedWork
+  /// What follows the merge, for a shell; empty: nothing.
+  std::function<std::string(const std::string& program, const std::string& typed, const std::string& into)>
+      afterMerge = nullptr;
+};
+
+/// Says how much of a plan a store lacks.
+void tellMissing(const SharedPlan& plan, const std::string& units, const std::filesystem::path& into);
+
+/// Says so, and writes its shares to --points or submits them as an array, each with a store
+/// of its own, and a job that merges them. Returns the exit code.
+int sharePlan(const Commands& commands, const ShareOptions& options, const SharedPlan& plan,
+              const SharedStore& store);
 
 }  // namespace lumivox::command

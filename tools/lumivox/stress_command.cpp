@@ -110,34 +110,17 @@ int shareStress(const StressCommand& command, const Commands& commands, Techniqu
                 const StressOptions& options) {
   const ShareOptions& share = command.share;
   const SharedPlan plan = planStress(options, techniques, share.tasks, share.taskSeconds);
-  std::size_t missing = 0;
-  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
-  print(fmt::format("{} of {} cells are missing in {}\n", missing, plan.points, options.into.string()));
-  if (plan.shares.empty()) return kGood;
-  if (!share.slurm) {
-    plan.write(share.points);
-    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
-    return kGood;
-  }
-  std::error_code ignored;
-  const std::string into = inSingleQuotes(std::filesystem::absolute(options.into, ignored).string());
-  const bool mixed = holdsOtherVersions(ResultsStore(options.into), techniques);
-  SharedWork work;
-  work.name = "stress";
-  work.beside = options.into;
-  work.dropped = {"--store", "-o", "--out"};
-  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
-  work.merge = [&](const std::string& program, const std::string&, const std::string& folder) {
-    const std::string page = options.output.empty()
-                                 ? std::string()
-                                 : fmt::format("exec {} stress --from {} -o {}\n", program, into,
-                                               inSingleQuotes(options.output.string()));
-    return mergeOfTasks(program, into, mixed, folder) + " || exit\n" + page;
-  };
-  return submitShares(commands, share, work, plan.shares.size(),
-                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
-             ? kGood
-             : kNotGood;
+  SharedStore store{.name = "stress",
+                    .units = "cells",
+                    .into = options.into,
+                    .mixed = [&] { return holdsOtherVersions(ResultsStore(options.into), techniques); },
+                    .dropped = {"--store", "-o", "--out"}};
+  if (!options.output.empty())
+    store.afterMerge = [&](const std::string& program, const std::string&, const std::string& into) {
+      return fmt::format("exec {} stress --from {} -o {}\n", program, into,
+                         inSingleQuotes(options.output.string()));
+    };
+  return sharePlan(commands, share, plan, store);
 }
 
 int stress(const StressCommand& command, const Commands& commands) {

@@ -30,32 +30,18 @@ int shareSweep(const SweepCommand& command, const Commands& commands, gpu::Devic
       device, techniques, options,
       [&](const std::filesystem::path& scene) { return commands.global.loadScene(scene); }, share.tasks,
       share.taskSeconds);
-  std::size_t missing = 0;
-  for (const std::vector<std::size_t>& one : plan.shares) missing += one.size();
-  print(fmt::format("{} of {} points are missing in {}\n", missing, plan.points, options.into.string()));
-  if (command.plan) print(fmt::format("{} tasks\n", plan.shares.size()));
-  if (command.plan || plan.shares.empty()) return kGood;
-  if (!share.slurm) {
-    plan.write(share.points);
-    print(fmt::format("{} shares; {}\n", plan.shares.size(), share.points.string()));
+  if (command.plan) {
+    tellMissing(plan, "points", options.into);
+    print(fmt::format("{} tasks\n", plan.shares.size()));
     return kGood;
   }
-  std::error_code ignored;
-  const std::string into = inSingleQuotes(std::filesystem::absolute(options.into, ignored).string());
-  const bool mixed = holdsOtherVersions(ResultsStore(options.into), techniques);
-  SharedWork work;
-  work.name = "sweep";
-  work.beside = options.into;
-  work.exclusive = true;
-  work.dropped = {"--store"};
-  work.task = [&](const std::string& folder, std::size_t) { return storeOfTask(folder, into); };
-  work.merge = [&](const std::string& program, const std::string&, const std::string& folder) {
-    return "exec " + mergeOfTasks(program, into, mixed, folder) + "\n";
-  };
-  return submitShares(commands, share, work, plan.shares.size(),
-                      [&](const std::filesystem::path& folder) { plan.write(folder / "plan.txt"); })
-             ? kGood
-             : kNotGood;
+  return sharePlan(commands, share, plan,
+                   {.name = "sweep",
+                    .units = "points",
+                    .into = options.into,
+                    .mixed = [&] { return holdsOtherVersions(ResultsStore(options.into), techniques); },
+                    .exclusive = true,
+                    .dropped = {"--store"}});
 }
 
 int sweep(const SweepCommand& command, const Commands& commands) {
