@@ -28,15 +28,15 @@ KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
 #endif
 }
 
-#ifdef LUMIVOX_TWO_SIDED_LIGHT
-#include "common/brdf.glsl"
-
 // Irradiance of the two sides of a surface, W/m^2, and the same times the share that the surface's Phong lobe reflects of it.
 struct SidesLit {
   vec3 front, back;
   vec3 frontByLobe, backByLobe;
 };
 const SidesLit kUnlit = SidesLit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+
+#ifdef LUMIVOX_TWO_SIDED_LIGHT
+#include "common/brdf.glsl"
 
 // Adds the light of the first lightCount lights, but only to the sides without known light. `exponent`: of the lobe; negative: no lobe.
 void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, float exponent, bool twoSided, int mediumSteps,

@@ -32,21 +32,16 @@ void main() {
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
   vec4 lobe = vec4(0.0);
-  vec3 front = vec3(0.0), back = front, frontByLobe = front, backByLobe = front;
+  SidesLit lit = kUnlit;
   KnownLight known = knownLightOf(index, fragment, true);
 #if LIGHTS
   if (glossy != 0) lobe = lobeOf(fragment);
   float exponent = any(greaterThan(lobe.rgb, vec3(0.0))) ? lobe.w : -1.0;
-  SidesLit lit = kUnlit;
   addArrivingBeside(known, lightCount, posWorld, unpackNormal(fragment.normal), exponent, true, 0, lit);
-  front = lit.front;
-  back = lit.back;
-  frontByLobe = lit.frontByLobe;
-  backByLobe = lit.backByLobe;
 #endif
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x), 0.0, 1.0);
-  vec3 sides[2] = vec3[2](albedo / kPi * front + lobe.rgb / kPi * frontByLobe + (known.side == 0 ? known.radiance : vec3(0.0)),
-                          albedo / kPi * back + lobe.rgb / kPi * backByLobe + (known.side == 0 ? vec3(0.0) : known.radiance));
+  vec3 sides[2] = vec3[2](albedo / kPi * lit.front + lobe.rgb / kPi * lit.frontByLobe + (known.side == 0 ? known.radiance : vec3(0.0)),
+                          albedo / kPi * lit.back + lobe.rgb / kPi * lit.backByLobe + (known.side == 0 ? vec3(0.0) : known.radiance));
   float most = 0.0;
   for (int side = 0; side < 2; ++side)
     for (int channel = 0; channel < 3; ++channel) {

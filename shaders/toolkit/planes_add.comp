@@ -3,7 +3,7 @@
 layout(local_size_x = 64) in;
 #include "planes.glsl"
 #include "planes_sums.glsl"
-layout(std430, binding = 6) buffer PlaneSums { int planeSums[]; };
+layout(std430, binding = 6) buffer PlaneSums { PlaneSum planeSums[]; };
 
 void main() {
   uint index = listIndex();
@@ -21,10 +21,10 @@ void main() {
   if (agreement[group] < 0.0) normal = -normal;
   vec3 place = unpackOffset(fragment.offset & (kSeenBehind - 1u)) - 0.5;
   float share = 1.0 / float(fragmentsOfSlot[slot]);
-  uint base = (2u * slot + uint(group)) * kPlaneSums;
+  uint sum = 2u * slot + uint(group);
   for (int c = 0; c < 3; ++c) {
-    atomicAdd(planeSums[base + uint(c)], signedShareOf(normal[c] * share));
-    atomicAdd(planeSums[base + 3u + uint(c)], signedShareOf(place[c] * share));
+    atomicAdd(planeSums[sum].normal[c], signedShareOf(normal[c] * share));
+    atomicAdd(planeSums[sum].place[c], signedShareOf(place[c] * share));
   }
-  atomicAdd(planeSums[base + 6u], signedShareOf(share));
+  atomicAdd(planeSums[sum].share, signedShareOf(share));
 }

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 #include "common/voxel_planes.glsl"
 #include "planes_sums.glsl"
 #include "toolkit/slots.glsl"
-layout(std430, binding = 6) readonly buffer PlaneSums { int planeSums[]; };
+layout(std430, binding = 6) readonly buffer PlaneSums { PlaneSum planeSums[]; };
 layout(std430, binding = 7) writeonly buffer VoxelPlanes { uvec2 voxelPlanes[]; };
 
 struct Group {
@@ -15,11 +15,11 @@ struct Group {
 };
 
 Group groupOf(uint slot, uint number) {
-  uint base = (2u * slot + number) * kPlaneSums;
-  vec3 normal = signedMeanOf(planeSums[base], planeSums[base + 1u], planeSums[base + 2u]);
-  float share = float(planeSums[base + 6u]) / kSignedFixedPoint, across = length(normal);
+  PlaneSum sum = planeSums[2u * slot + number];
+  vec3 normal = signedMeanOf(sum.normal[0], sum.normal[1], sum.normal[2]);
+  float share = float(sum.share) / kSignedFixedPoint, across = length(normal);
   if (!(share > 0.0 && across > 0.0)) return Group(false, vec3(0.0), vec3(0.0));
-  return Group(true, signedMeanOf(planeSums[base + 3u], planeSums[base + 4u], planeSums[base + 5u]) / share, normal / across);
+  return Group(true, signedMeanOf(sum.place[0], sum.place[1], sum.place[2]) / share, normal / across);
 }
 
 uint planeOf(Group group, Group other) {

@@ -49,7 +49,7 @@ VoxelPlanes RayStop::planes(PassContext& frame, const BinaryGrid& bits, const st
   const gpu::BufferRef keys =
       frame.emptyElements(code::planes_key::planeKeys, 2 * slots.room, "normals of groups");
   const gpu::BufferRef sums =
-      frame.emptyElements(code::planes_add::planeSums, 2 * 7 * slots.room, "sums of groups");
+      frame.emptyElements(code::planes_add::planeSums, 2 * slots.room, "sums of groups");
   const gpu::BufferRef planes =
       frame.elements(code::planes_resolve::voxelPlanes, slots.room, "planes of voxels");
   for (int second = 0; second < 2; ++second)

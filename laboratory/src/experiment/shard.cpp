@@ -25,6 +25,16 @@ std::optional<std::size_t> wholeNumber(const std::string& text) {
   return value;
 }
 
+/// The mean of the costs that are known, s; none where none is.
+std::optional<double> meanOf(const std::vector<double>& costs) {
+  double known = 0.0;
+  std::size_t parts = 0;
+  for (const double cost : costs)
+    if (cost > 0.0) known += cost, ++parts;
+  if (parts == 0) return std::nullopt;
+  return known / static_cast<double>(parts);
+}
+
 }  // namespace
 
 Shard shardOf(const std::string& text) {
@@ -37,11 +47,7 @@ Shard shardOf(const std::string& text) {
 }
 
 std::vector<std::size_t> cutsOf(const std::vector<double>& costs, std::size_t count) {
-  double known = 0.0;
-  std::size_t knownParts = 0;
-  for (const double cost : costs)
-    if (cost > 0.0) known += cost, ++knownParts;
-  const double mean = knownParts == 0 ? 1.0 : known / static_cast<double>(knownParts);
+  const double mean = meanOf(costs).value_or(1.0);
   const auto costOf = [&](double cost) { return cost > 0.0 ? cost : mean; };
   double total = 0.0;
   for (const double cost : costs) total += costOf(cost);
@@ -108,14 +114,12 @@ SharedPlan SharedPlan::load(const std::filesystem::path& file) {
 }
 
 std::size_t tasksFor(const std::vector<double>& costs, std::size_t tasks, double taskSeconds) {
-  double known = 0.0;
-  std::size_t knownParts = 0;
-  for (const double cost : costs)
-    if (cost > 0.0) known += cost, ++knownParts;
-  if (tasks == 0 && knownParts == 0) tasks = kTasksUnknown;
-  if (tasks == 0)
-    tasks = static_cast<std::size_t>(
-        std::ceil(known / static_cast<double>(knownParts) * static_cast<double>(costs.size()) / taskSeconds));
+  if (tasks == 0) {
+    const std::optional<double> mean = meanOf(costs);
+    tasks = mean
+                ? static_cast<std::size_t>(std::ceil(*mean * static_cast<double>(costs.size()) / taskSeconds))
+                : kTasksUnknown;
+  }
   return std::min({std::max<std::size_t>(tasks, 1), std::max<std::size_t>(costs.size(), 1), kMostTasks});
 }
 

@@ -27,23 +27,20 @@ void main() {
   vec3 albedo = albedoOf(fragment);
   vec4 lobe = glossy != 0 ? lobeOf(fragment) : vec4(0.0);
   bool hasLobe = any(greaterThan(lobe.rgb, vec3(0.0)));
-  vec3 front = vec3(0.0), back = front, emitted = emittedBy(fragment);
-  vec3 frontByLobe = vec3(0.0), backByLobe = frontByLobe;
+  vec3 emitted = emittedBy(fragment);
   float ambientByLobe = hasLobe ? ambient * phongAlbedo(lobe.w) : 0.0;
   KnownLight known = knownLightOf(index, fragment, twoSided != 0);
+  SidesLit lit = kUnlit;
 #if LIGHTS
-  SidesLit lit = litAt(fragment, known, hasLobe ? lobe.w : -1.0);
-  front = lit.front;
-  back = lit.back;
-  frontByLobe = lit.frontByLobe;
-  backByLobe = lit.backByLobe;
+  lit = litAt(fragment, known, hasLobe ? lobe.w : -1.0);
 #endif
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
   float most = mostRadianceIn(voxel);
 #if DIRECTIONS
-  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + lobe.rgb / kPi * (ambientByLobe + frontByLobe) + emitted + (known.side == 0 ? known.radiance : vec3(0.0)),
-                          albedo / kPi * (ambient + back) + lobe.rgb / kPi * (ambientByLobe + backByLobe) + (known.side == 0 ? vec3(0.0) : known.radiance));
+  vec3 front = albedo / kPi * (ambient + lit.front) + lobe.rgb / kPi * (ambientByLobe + lit.frontByLobe) + emitted;
+  vec3 back = albedo / kPi * (ambient + lit.back) + lobe.rgb / kPi * (ambientByLobe + lit.backByLobe);
+  vec3 sides[2] = vec3[2](front + (known.side == 0 ? known.radiance : vec3(0.0)), back + (known.side == 0 ? vec3(0.0) : known.radiance));
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
     vec3 radiance = min(sides[side], most);
@@ -53,8 +50,8 @@ void main() {
   atomicAdd(directions[place].fragments, 1u);
   atomicMax(directions[place].brightest, floatBitsToUint(brightest));
 #else
-  vec3 radiance = albedo / kPi * (ambient + front + back);  // ambient: thesis Fig. 66
-  radiance = min(radiance + lobe.rgb / kPi * (ambientByLobe + frontByLobe + backByLobe), most);
+  vec3 radiance = albedo / kPi * (ambient + lit.front + lit.back);  // ambient: thesis Fig. 66
+  radiance = min(radiance + lobe.rgb / kPi * (ambientByLobe + lit.frontByLobe + lit.backByLobe), most);
   radiance = min(radiance + known.radiance + emitted, most);
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   atomicAdd(sums[place].fragments, 1u);
