@@ -138,13 +138,22 @@ TEST_CASE("table: errors of light that glossy surfaces send on from voxels", "[.
     const LayeredImage reference = referenceOf(scene, picture);
     for (const char* text :
          {"voxel_cone_tracing", "voxel_cone_tracing_directional", "voxel_cone_tracing_octree",
-          "voxel_cone_tracing_octree_directional", "voxel_cone_tracing_clipmap", "imperfect_volumes"})
-      for (const char* lobes : {"none", "diffuse"}) {
-        const Against found =
-            lightAgainst(reference, pictured(scene, picture, pipeline(text), {std::string("lobes=") + lobes})
-                                        .outputs.at("indirect_diffuse"));
-        table.row(fmt::format("{}, {}, {}", name, text, lobes), {found.rmse, found.ratio});
-        CHECK(found.ratio > 0.0);
+          "voxel_cone_tracing_octree_directional", "voxel_cone_tracing_clipmap", "imperfect_volumes"}) {
+      Against found[2];
+      for (const bool diffuse : {false, true}) {
+        const std::string lobes = diffuse ? "diffuse" : "none";
+        found[diffuse] = lightAgainst(
+            reference,
+            pictured(scene, picture, pipeline(text), {"lobes=" + lobes}).outputs.at("indirect_diffuse"));
+        table.row(fmt::format("{}, {}, {}", name, text, lobes), {found[diffuse].rmse, found[diffuse].ratio});
       }
+      CAPTURE(name, text);
+      CHECK(found[true].ratio > found[false].ratio);
+      // On the scene that it was made for the error falls; direction is what voxels lack elsewhere.
+      if (name == "cornell_glossy") {
+        CHECK(found[true].rmse < 0.75 * found[false].rmse);
+        CHECK(found[true].ratio == Approx(1.0).margin(0.1));
+      }
+    }
   }
 }
