@@ -199,7 +199,8 @@ TEST_CASE("table: errors of light that glossy surfaces send on, by what maps kee
              {"near_field_voxels", {"rays=256"}},
              {"light_propagation_volumes", {}},
              {"layered_reflective_shadow_maps", {}},
-             {"voxel_cone_tracing_octree_photons", {}}})
+             {"voxel_cone_tracing_octree_photons", {}}}) {
+      double withNone = 0.0;
       for (const char* lobes : {"none", "diffuse", "directional"}) {
         const Pipeline one = pipeline(text);
         const bool turns =
@@ -212,7 +213,12 @@ TEST_CASE("table: errors of light that glossy surfaces send on, by what maps kee
         table.row(
             fmt::format("{}, {}{}, {}", name, text, settings.empty() ? "" : ' ' + settings.front(), lobes),
             {found.rmse, found.ratio});
-        CHECK(found.ratio > 0.0);
+        CAPTURE(name, text, lobes);
+        if (lobes == std::string("none"))
+          withNone = found.ratio;
+        else
+          CHECK(found.ratio > withNone);
       }
+    }
   }
 }
