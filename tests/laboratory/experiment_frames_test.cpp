@@ -31,6 +31,15 @@ struct Progressive : Toy {
   }
 };
 
+/// A pass that goes on from the last frame only where its text binds that.
+struct GoesOn : Toy {
+  using Toy::Toy;
+  In<Image> before{this, "before", Presence::history, "the last frame's image"};
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::camera; }
+  void run(PassContext& frame) override { radiance = paint(frame, kDirect); }
+};
+
 /// The pixel of an upright or level edge: 1 where its ray passes before it.
 struct Edge : Toy {
   using Toy::Toy;
@@ -53,16 +62,17 @@ struct TwoBounces : Toy {
   void run(PassContext& frame) override { radiance = paint(frame, 0.25f + 0.125f); }
 };
 
-Pipeline toyPipeline(const std::string& pass, const std::string& output) {
-  return Pipeline::parse(
-      "pipeline \"Toy\" {\n  pass a toys." + pass + " { }\n  output " + output + " a.radiance\n}\n",
-      "toy.pipeline");
+Pipeline toyPipeline(const std::string& pass, const std::string& output, const std::string& bound = "") {
+  return Pipeline::parse("pipeline \"Toy\" {\n  pass a toys." + pass + " { " + bound + " }\n  output " +
+                             output + " a.radiance\n}\n",
+                         "toy.pipeline");
 }
 
 struct Toys : TestTechniques {
   Toys() {
     add<Progressive>("toys", "progressive");
     add<TwoBounces>("toys", "two_bounces");
+    add<GoesOn>("toys", "goes_on");
     add<Edge>("toys", "edge");
     add<Paint>("toys", "paint");
   }
@@ -173,10 +183,11 @@ TEST_CASE("the time of a point of several frames is that of all of them, from no
 
 TEST_CASE("points after more and more frames are planned for progressive pipelines alone") {
   Toys toys;
-  const auto framesIn = [&](const std::string& pass, int most, const std::vector<Sweep>& sweeps = {}) {
+  const auto framesIn = [&](const std::string& pass, int most, const std::vector<Sweep>& sweeps = {},
+                            const std::string& bound = "") {
     ReportOptions options;
     options.frames = most;
-    Pipeline pipeline = toyPipeline(pass, "direct");
+    Pipeline pipeline = toyPipeline(pass, "direct", bound);
     pipeline.sweeps = sweeps;
     const experiment::LoadedPipeline loaded = experiment::withSettings(pipeline, {});
     std::vector<int> frames;
@@ -189,6 +200,8 @@ TEST_CASE("points after more and more frames are planned for progressive pipelin
   CHECK(framesIn("progressive", 6) == std::vector<int>{1, 2, 4, 6});
   CHECK(framesIn("progressive", 1) == std::vector<int>{1});
   CHECK(framesIn("paint", 6) == std::vector<int>{1});
+  CHECK(framesIn("goes_on", 6) == std::vector<int>{1});
+  CHECK(framesIn("goes_on", 6, {}, "before a.radiance") == std::vector<int>{1, 2, 4, 6});
   // An axis of frames in a sweep: others go without it, and say so.
   ParameterValue one, four;
   one.number = 1.0;

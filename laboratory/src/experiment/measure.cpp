@@ -196,9 +196,14 @@ bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques) {
     const PassEntry* entry = technique == nullptr ? nullptr : technique->find(text.pass);
     if (entry == nullptr) return false;
     const std::unique_ptr<Pass> pass = entry->make();
+    const auto isBound = [&](const std::string& name) {
+      return std::any_of(text.block->items.begin(), text.block->items.end(),
+                         [&](const dsl::Item& item) { return item.property && item.property->word == name; });
+    };
     return reads(pass->readsFrom(), Reads::history) ||
-           std::any_of(pass->inputs().begin(), pass->inputs().end(),
-                       [](const InBase* input) { return input->presence() == Presence::history; });
+           std::any_of(pass->inputs().begin(), pass->inputs().end(), [&](const InBase* input) {
+             return input->presence() == Presence::history && isBound(input->name());
+           });
   });
 }
 

@@ -92,7 +92,8 @@ RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& p
 /// The number of indirect bounces that each output of a pipeline models, by name; kWholeImage has the most of
 /// them.
 std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);
-/// Whether some pass continues from earlier frames, so that images improve while nothing changes.
+/// Whether some pass continues from earlier frames, so that images improve while nothing changes: one that
+/// reads its own history, or has an input of the last frame bound.
 bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques);
 
 /// Fills the errors, images and health of a point from an executor of its own.
