@@ -369,6 +369,34 @@ TEST_CASE("rays that end at boxes ignore the fragments, to the bit") {
   CHECK(open(true) == open(false));
 }
 
+TEST_CASE("planes are kept while the camera alone moves, and follow what turns") {
+  const Scene scene = committed("spinning_box");
+  const Pipeline text = pipeline("near_field_voxels");
+  RenderOptions options = sized(24, 24);
+  options.interactive = true;
+  options.parameters = text.settings({"resolution=32", "rays=4", "stop=plane"});
+  PipelineExecutor executor(device(), techniques(), scene, text, options);
+  const auto sameAsAlone = [&](const SceneSnapshot& snapshot) {
+    PipelineExecutor alone(device(), techniques(), scene, text, options);
+    return executor.render(snapshot).outputs.at("indirect_diffuse").values() ==
+           alone.render(snapshot).outputs.at("indirect_diffuse").values();
+  };
+  const auto reused = [&] {
+    const auto& leftOut = executor.explain().leftOut;
+    return std::any_of(leftOut.begin(), leftOut.end(), [](const LeftOut& one) {
+      return one.what == "gather: planes within voxels in later frames";
+    });
+  };
+  SceneSnapshot snapshot = snapshotOf(scene, 0.0, {}, 24, 24);
+  CHECK(sameAsAlone(snapshot));
+  CHECK(sameAsAlone(snapshotOf(scene, 0.5, {}, 24, 24)));
+  CHECK_FALSE(reused());
+  snapshot = snapshotOf(scene, 0.5, {}, 24, 24);
+  snapshot.camera.eye.x += 0.1f;
+  CHECK(sameAsAlone(snapshot));
+  CHECK(reused());
+}
+
 TEST_CASE("planes without fragments, of another grid or with the printed walk are refused") {
   const Voxelized voxels(solidBox(), 32), other(solidBox(), 16);
   const auto gather = [&](const Settings& settings) {

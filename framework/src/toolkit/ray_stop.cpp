@@ -33,7 +33,7 @@ RayStop::RayStop(Pass* pass)
       fragments_(pass, "fragments", Presence::optional,
                  "with 'stop plane': the surface samples that 'bits' are made from") {}
 
-std::string RayStop::check(bool boxesOnly, const char* parameter, const char* value) const {
+std::string RayStop::check(bool boxesOnly, const char* parameter, const std::string& value) const {
   if (!atPlanes() || !boxesOnly) return {};
   return fmt::format("'stop plane' with '{0} {1}'; expected 'stop box', or another {0}", parameter, value);
 }
@@ -45,7 +45,11 @@ VoxelPlanes RayStop::planes(PassContext& frame, const BinaryGrid& bits, const st
   if (!(fragments_->grid == bits.grid))
     throw Error(fmt::format("{}: 'bits' have {}, and 'fragments' {}; expected one grid for both", pass,
                             inWords(bits.grid), inWords(fragments_->grid)));
-  const VoxelSlots slots = claimSlots(frame, *fragments_, room_);
+  return frame.kept("planes within voxels", fragments_->count, [&] { return planesOf(frame, *fragments_); });
+}
+
+VoxelPlanes RayStop::planesOf(PassContext& frame, const VoxelFragments& fragments) {
+  const VoxelSlots slots = claimSlots(frame, fragments, room_);
   const gpu::BufferRef keys =
       frame.emptyElements(code::planes_key::planeKeys, 2 * slots.room, "normals of groups");
   const gpu::BufferRef sums =
@@ -54,10 +58,10 @@ VoxelPlanes RayStop::planes(PassContext& frame, const BinaryGrid& bits, const st
       frame.elements(code::planes_resolve::voxelPlanes, slots.room, "planes of voxels");
   for (int second = 0; second < 2; ++second)
     forEachFragment(frame, frame.program(code::planes_key::Variant{.second = second}),
-                    {code::planes_key::planeKeys(keys), SlotBinding(slots)}, *fragments_);
+                    {code::planes_key::planeKeys(keys), SlotBinding(slots)}, fragments);
   forEachFragment(frame, frame.program(code::planes_add::kProgram),
                   {code::planes_add::planeKeys(keys), code::planes_add::planeSums(sums), SlotBinding(slots)},
-                  *fragments_);
+                  fragments);
   forEachSlot(frame, frame.program(code::planes_resolve::kProgram),
               {code::planes_resolve::planeSums(sums), code::planes_resolve::voxelPlanes(planes)}, slots);
   return {slots.numbers, planes};

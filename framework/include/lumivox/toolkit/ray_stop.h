@@ -29,9 +29,10 @@ class RayStop {
   bool isInput(const InBase& input) const { return &input == &fragments_; }
   /// What is wrong with the parameters, in words, or empty. `boxesOnly`: the pass follows its rays in a way
   /// that ends at boxes; `parameter` and `value` choose that way.
-  std::string check(bool boxesOnly, const char* parameter, const char* value) const;
-  /// With planes, makes them from the fragments. Error where the fragments are missing or on
-  /// another grid than the bits. `pass`: whose input they are.
+  std::string check(bool boxesOnly, const char* parameter, const std::string& value) const;
+  /// With planes, makes them from the fragments, or those of an earlier frame where the fragments are the
+  /// same. Error where the fragments are missing or on another grid than the bits. `pass`: whose input they
+  /// are.
   VoxelPlanes planes(PassContext& frame, const BinaryGrid& bits, const std::string& pass);
   /// How far the end of a ray may lie from the surface that a map shows, in the voxels' own measure
   /// (BackProjection::binding()): planes are nearer to it than boxes.
@@ -41,6 +42,7 @@ class RayStop {
 
  private:
   enum class Stop { box, plane };
+  VoxelPlanes planesOf(PassContext& frame, const VoxelFragments& fragments);
   Param<Stop> stop_;
   In<VoxelFragments> fragments_;
   std::uint64_t room_ = 0;  ///< number of slots: a guess, or what earlier frames needed

@@ -21,6 +21,7 @@ class RayMethod {
   explicit RayMethod(Pass* pass);
   /// Value of the axis BIT_RULE.
   int axis() const { return static_cast<int>(static_cast<Method>(method_)); }
+  std::string name() const { return method_.valueText(); }
   /// The grid with its bits. Error where they do not fit the method.
   shader::BindingSet binding(PassContext& frame, const BinaryGrid& bits) const;
   /// A bound for the turns of all loops of one ray.

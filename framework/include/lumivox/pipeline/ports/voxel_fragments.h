@@ -9,6 +9,8 @@ struct VoxelFragments {
   static constexpr std::uint64_t kFragmentBytes = 6 * sizeof(std::uint32_t);
   GridPlacement grid;
   gpu::BufferRef fragments;
+  /// Made anew whenever the list is. A reader may hold the pointer: while it is the same, so are the
+  /// fragments.
   gpu::BufferRef count;
   /// Direct light that fragments are known to reflect, as a renderer computed it at visible surfaces
   /// (Mavridis & Papaioannou 2011, Sec. 3.2). Null: known for none. Otherwise a word for each of the first
