@@ -1,7 +1,8 @@
 // Paths through bits on `cornell`: light carried back over stored surfaces, as published, over light added as
-// it is met, in time and bytes; and the path tracer of the reference over paths through bits, at equal
-// samples and at equal error. Times are taken in turns; printed are medians and quartiles of ratios.
-// usage: bench_voxel_path_tracing [--quick | REPEATS] (default: 7), from the project's folder.
+// it is met, in time and bytes; the path tracer of the reference over paths through bits, at equal samples
+// and at equal error; and paths that end at planes within voxels over those that end at boxes, in time and
+// error, on several scenes. Times are taken in turns; printed are medians and quartiles of ratios. usage:
+// bench_voxel_path_tracing [--quick | REPEATS] (default: 7), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <algorithm>
 #include <chrono>
@@ -27,7 +28,7 @@ Pipeline ofOrder(const std::string& order) {
   return Pipeline::parse(text, kPipeline);
 }
 
-/// RMS error of indirect diffuse light, without the reference's noise.
+/// RMS error of light of two bounces, without the reference's noise.
 double errorOf(const ImageBuffer& image, const LayeredImage& truth) {
   const ImageError error =
       compare(image, truth.layers.at("bounces_2_diffuse"), truth.layers.at("bounces_2_diffuse.variance"));
@@ -91,6 +92,34 @@ void comparePathTracer(Machine& machine, const Scene& scene, int side, int sampl
   row("path tracer over paths, time at equal error", inWords(equalError));
 }
 
+/// Paths that end at boxes with twice the offset, as the pipeline has them, and at planes. Errors are over
+/// those of no indirect light.
+void compareStops(Machine& machine, const std::string& name, int side, const std::vector<int>& samples,
+                  int referenceSamples) {
+  const Scene scene = loadScene("scenes/" + name + ".scene");
+  const LayeredImage truth = renderReference(scene, tracer(side, referenceSamples, 7));
+  ImageBuffer none(side, side, 3);
+  const double ofNone = errorOf(none, truth);
+  for (const int count : samples) {
+    const std::string paths = fmt::format("samples={}", count);
+    Bench boxes(machine, scene, Pipeline::load(kPipeline), {paths}, side),
+        planes(machine, scene, Pipeline::load(kPipeline), {paths, "stop=plane", "offset=0.5"}, side);
+    std::vector<double> ratios, ms;
+    for (int repeat = -1; repeat < machine.repeats; ++repeat) {
+      const double ofBoxes = boxes.afresh().at("trace"), ofPlanes = planes.afresh().at("trace");
+      if (repeat < 0) continue;
+      ratios.push_back(ofPlanes / ofBoxes);
+      ms.push_back(ofBoxes);
+    }
+    const auto error = [&](Bench& bench) {
+      return errorOf(bench.pictured().outputs.at("indirect_diffuse"), truth) / ofNone;
+    };
+    row(fmt::format("{}, {} paths: time of planes over boxes; errors of both; ms of boxes", name, count),
+        fmt::format("{}  {:.3f} {:.3f}  {:.3g}", inWords(ratios), error(boxes), error(planes),
+                    spreadOf(ms).median));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,6 +131,12 @@ int main(int argc, char** argv) {
     const int side = quick ? 16 : 128;
     compareOrders(machine, scene, side, quick ? std::vector{2} : std::vector{1, 2, 8, 64});
     comparePathTracer(machine, scene, side, quick ? 2 : 64, quick ? 16 : 1024);
+    for (const char* name : {"cornell", "cornell_glossy", "corridor", "arcade", "spinning_box", "sibenik",
+                             "untuned/court", "untuned/room"}) {
+      if (quick && name != std::string("cornell")) continue;
+      compareStops(machine, name, quick ? 16 : 64,
+                   quick ? std::vector{2} : std::vector{4, 8, 16, 32, 64, 256}, quick ? 16 : 1024);
+    }
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_voxel_path_tracing: {}\n", error.what());

@@ -48,16 +48,35 @@ float meetsPlane(uint word, vec4 plane, bool clipped, vec4 other, vec3 fromCentr
   return meets && (t >= kNoBacks || (slope > 0.0) == (word >> 31 != 0u)) ? t : kNever;
 }
 
-// The t at which the ray that is followed ends in an occupied voxel; kNever: it passes. In a voxel without planes it ends at the box.
-float stopIn(ivec3 voxel, float enters) {
+// Of a voxel its slot from 1 on; 0: it has no planes, and rays end at its box.
+uint slotOfPlanes(ivec3 voxel) {
   uint slot = texelFetch(planeSlots, voxel, 0).r;
-  if (slot == 0u || slot > uint(voxelPlanes.length())) return enters;
+  return slot <= uint(voxelPlanes.length()) ? slot : 0u;
+}
+
+// Where the ray that is followed meets a plane of a voxel with a slot: the normal in xyz, of any length, and the t in w; kNever: it passes.
+vec4 planeMetIn(ivec3 voxel, uint slot) {
   uvec2 words = voxelPlanes[slot - 1u];
   vec3 fromCentre = bitOrigin - (vec3(voxel) + 0.5);
   vec4 first = unpackPlane(words.x);
-  if (words.y == 0u) return meetsPlane(words.x, first, false, first, fromCentre);
+  if (words.y == 0u) return vec4(first.xyz, meetsPlane(words.x, first, false, first, fromCentre));
   vec4 second = unpackPlane(words.y);
-  return min(meetsPlane(words.x, first, true, second, fromCentre), meetsPlane(words.y, second, true, first, fromCentre));
+  float atFirst = meetsPlane(words.x, first, true, second, fromCentre), atSecond = meetsPlane(words.y, second, true, first, fromCentre);
+  return atSecond < atFirst ? vec4(second.xyz, atSecond) : vec4(first.xyz, atFirst);
+}
+
+// The t at which the ray ends in an occupied voxel that it enters at a t; kNever: it passes.
+float stopIn(ivec3 voxel, float enters) {
+  uint slot = slotOfPlanes(voxel);
+  return slot == 0u ? enters : planeMetIn(voxel, slot).w;
+}
+
+// The unit normal of the plane at which the ray ended in a voxel, on the side that the ray came from; zero: it ended at the box.
+vec3 normalOfStop(ivec3 voxel) {
+  uint slot = slotOfPlanes(voxel);
+  if (slot == 0u) return vec3(0.0);
+  vec3 normal = normalize(planeMetIn(voxel, slot).xyz);
+  return dot(normal, bitDirection) > 0.0 ? -normal : normal;
 }
 
 #endif

@@ -4,6 +4,7 @@
 #pragma lumivox axis MAP 0 1
 #pragma lumivox axis GLOSSY 0 1      // surfaces have a Phong lobe
 #pragma lumivox axis ATTRIBUTES 0 1  // paths go on from surfaces in shadow
+// With PLANES 1, included after common/voxel_planes.glsl: rays end at planes within voxels.
 #include "common/bit_rays.glsl"
 #include "common/brdf.glsl"
 #include "common/cones.glsl"
@@ -116,9 +117,13 @@ Choice chosen(ivec2 at, Surface surface, int fromSurface) {
   return result;
 }
 
-bool isSet(vec3 place) {
+// Whether a ray that begins at a place ends at once at the box of its voxel.
+bool isStuck(vec3 place) {
   ivec3 voxel = ivec3(floor(place));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return false;
+#if PLANES
+  if (slotOfPlanes(voxel) != 0u) return false;
+#endif
   uvec4 stack = texelFetch(bitStacks, ivec3(voxel.xy, voxel.z / kStackBits), 0);
   return (stack[voxel.z >> 5 & 3] >> (voxel.z & 31) & 1u) != 0u;
 }
@@ -127,10 +132,10 @@ bool isSet(vec3 place) {
 vec3 startOf(Surface surface, bool mayPush) {
   const float kStep = 0.25;  // voxels; at most eight steps, two voxels
   vec3 start = surface.place + surface.outwards * (offset * reachOfPlane(surface.outwards));
-  if (!mayPush || pushes == 0 || !isSet(start)) return start;
+  if (!mayPush || pushes == 0 || !isStuck(start)) return start;
   for (int i = 1; i <= 8; ++i) {
     vec3 further = start + float(i) * kStep * surface.outwards;
-    if (!isSet(further)) return further;
+    if (!isStuck(further)) return further;
   }
   return start;
 }
@@ -170,12 +175,20 @@ vec3 sentBy(LightSample light, ivec3 texel, vec3 toViewer) {
 
 Meeting meetingOf(BitHit hit) {
   vec3 toViewer = -bitDirection;
+#if PLANES
+  vec3 place = bitOrigin + hit.t * bitDirection;
+#else
   vec3 place = bitOrigin + 0.5 * (hit.t + max(leavesVoxel(hit.voxel), hit.t)) * bitDirection;
+#endif
   Meeting result = Meeting(vec3(0.0), true, Surface(place, toViewer, toViewer, toViewer, vec3(0.0), vec4(0.0)));
   vec3 voxelsNormal = toViewer;
 #if ATTRIBUTES
   vec3 mean = texelFetch(voxelNormal, hit.voxel, 0).xyz;
   if (dot(mean, mean) > 0.0) voxelsNormal = dot(mean, toViewer) < 0.0 ? -normalize(mean) : normalize(mean);
+#if PLANES
+  vec3 planesNormal = normalOfStop(hit.voxel);
+  if (planesNormal != vec3(0.0)) voxelsNormal = planesNormal;
+#endif
   result.surface.normal = voxelsNormal;
   result.surface.diffuse = texelFetch(voxelAlbedo, hit.voxel, 0).rgb;
 #endif

@@ -5,6 +5,12 @@
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox require ARRIVING || REFLECTED
 #pragma lumivox require GLOSSY || !REFLECTED
+#pragma lumivox axis PLANES 0 1  // 1: by one walk, since all but the printed one find the same voxels
+#pragma lumivox require !PLANES || BIT_RULE == hierarchy
+#if PLANES
+#include "common/bit_grid.glsl"
+#include "common/voxel_planes.glsl"
+#endif
 #include "path.glsl"
 #include "sums.glsl"
 

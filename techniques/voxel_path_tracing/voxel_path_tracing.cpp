@@ -12,6 +12,7 @@
 #include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "lumivox/toolkit/ray_stop.h"
 #include "lumivox/toolkit/room.h"
 #include "lumivox/toolkit/voxel_rays.h"
 #include "voxel_path_tracing_shaders.h"
@@ -61,7 +62,7 @@ class TracePass : public Pass {
       "start of a ray along the normal, in the distance beyond which no voxel lies that the surface's plane touches"};
   Param<Stuck> stuck{
       this, "stuck", Stuck::push,
-      "rays from a voxel that begin in a set one: begin in the next empty voxel along the normal, within two; or end at once",
+      "rays from a voxel that begin in a set one, at whose box they would end: begin in the next empty voxel along the normal, within two; or end at once",
       published(Stuck::hit)};
   Param<Normals> normals{
       this, "normals", Normals::map,
@@ -72,6 +73,7 @@ class TracePass : public Pass {
       "paths end by chance, the more often the less light they carry; the others count more"};
   Param<float> radius{
       this, "radius", 0.0f, within(0.0f, 1e9f), "m", "length of a ray; 0: through all of the grid"};
+  RayStop stop{this};
   lumivox::BackProjection projection{this};
   PublishedForm asPublished{this,
                             "the tests of Listing 4.49 whether a texel of the map shows the end of a ray"};
@@ -84,11 +86,19 @@ class TracePass : public Pass {
     return Reads::camera | Reads::environment | Reads::history |
            (framesOf == Frames::apart ? Reads::time : Reads::nothing);
   }
-  bool uses(const InBase& input) const override { return &input != &attributes || bounces > 1; }
+  bool uses(const InBase& input) const override {
+    if (stop.isInput(input)) return stop.atPlanes();
+    return &input != &attributes || bounces > 1;
+  }
   int indirectBounces() const override { return bounces; }
   std::string checkParameters() const override {
     if (roulette && order == Order::backward)
       return "'roulette' is on and 'order' backward; expected one of both: stored paths do not end";
+    // With planes there is one walk and one order: others would only add variants of the programs.
+    std::string ofStop = stop.check(order == Order::backward, "order", "backward");
+    if (ofStop.empty())
+      ofStop = stop.check(method.axis() != trace::Variant::bitRuleHierarchy, "method", method.name());
+    if (!ofStop.empty()) return ofStop;
     return projection.taps() == 1 ? std::string()
                                   : "'taps' is 4; expected 1: a path goes on from one texel's surface";
   }
@@ -99,7 +109,7 @@ class TracePass : public Pass {
   /// Bounds the turns of all loops of one ray of a path.
   std::int64_t turnsOfRay() const {
     const std::int64_t lights = readsMap() ? std::int64_t{kTurnsOfLight} * map->lightCount : 0;
-    return method.turns(*bits) + lights + kTurnsOfPush;
+    return method.turns(*bits) + stop.turns(*bits) + lights + kTurnsOfPush;
   }
 
   /// Error where the connected inputs do not belong together.
@@ -144,7 +154,8 @@ class TracePass : public Pass {
       sums.current->clear(glm::vec4(0.0f));
     const auto paths = static_cast<std::uint32_t>(static_cast<int>(samples));
     if (outputs.any()) {
-      const shader::BindingSet scene = sceneOf(frame);
+      const VoxelPlanes planes = stop.planes(frame, *bits, "voxel_path_tracing.trace");
+      const shader::BindingSet scene{sceneOf(frame), planes};
       Path path = pathOf(frame);
       path.number =
           static_cast<std::uint32_t>(apart ? frame.frameIndex() + frame.accumulated() : before) * paths;
@@ -183,7 +194,8 @@ class TracePass : public Pass {
                               method.binding(frame, *bits)};
     if (readsMap()) {
       result.add(ReflectiveShadowMapBinding(*map));
-      result.add(projection.binding(bits->grid.voxelSize, asPublished, 0, map->lightCount));
+      result.add(
+          projection.binding(stop.voxelsOfMap() * bits->grid.voxelSize, asPublished, 0, map->lightCount));
       result.add(shader::SampledSlot{"rsmAlbedo"}(map->albedo, gpu::Sampling::nearest));
       if (map->specular)
         result.add(shader::SampledSlot{"rsmSpecular"}(map->specular, gpu::Sampling::nearest));
@@ -217,9 +229,10 @@ class TracePass : public Pass {
   /// dispatch follows as many rays of a path as the limit of loops allows.
   void followForward(PassContext& frame, const shader::BindingSet& scene, const gpu::TextureRef& sums,
                      Path path, Outputs outputs) const {
-    const shader::BoundProgram& program =
-        frame.program(variantOf(trace::Variant{.arriving = outputs.arriving, .reflected = outputs.reflected}),
-                      constantsOf<trace::Constants>(frame));
+    const shader::BoundProgram& program = frame.program(
+        variantOf(trace::Variant{
+            .arriving = outputs.arriving, .reflected = outputs.reflected, .planes = stop.atPlanes()}),
+        constantsOf<trace::Constants>(frame));
     const gpu::TextureRef starts = frame.image("starts of rays"),
                           directions = frame.image("directions of rays"),
                           throughputs = frame.image("throughputs of paths");

@@ -42,6 +42,25 @@ TEST_CASE("a ray meets the nearest box, enters and leaves it by its slabs, and n
   CHECK_FALSE(VoxelBoxes({}, kGrid).first({0, 0, 0}, {1, 0, 0}, 100));
 }
 
+TEST_CASE("a ray ends at the surface within a box, or passes the box and ends in the next") {
+  const std::vector<glm::ivec3> voxels{{10, 8, 8}, {12, 8, 8}};
+  // Nothing stops rays in the first box; in the other they end at a quarter of it.
+  const VoxelBoxes boxes(voxels, kGrid, [](const BoxHit& hit) -> std::optional<BoxStop> {
+    if (hit.voxel.x == 10) return std::nullopt;
+    return BoxStop{hit.enter + 0.25 * (hit.leave - hit.enter), {-1, 0, 0}};
+  });
+  // From 0: the boxes are from 1 to 1.5 and from 2 to 2.5.
+  const auto hit = boxes.first({0, 0.25, 0.25}, {1, 0, 0}, 100);
+  REQUIRE(hit);
+  CHECK(hit->voxel == glm::ivec3(12, 8, 8));
+  CHECK(hit->enter == Approx(2.0).epsilon(1e-12));
+  CHECK(hit->place().x == Approx(2.125).epsilon(1e-12));
+  CHECK(hit->normal == glm::dvec3(-1, 0, 0));
+  CHECK_FALSE(boxes.first({0, 0.25, 0.25}, {1, 0, 0}, 2.12));
+  CHECK(VoxelBoxes(voxels, kGrid).first({0, 0.25, 0.25}, {1, 0, 0}, 100)->place().x ==
+        Approx(1.0).epsilon(1e-12));
+}
+
 TEST_CASE("a ceiling of boxes takes its form factor of occlusion and of light, the sky the rest") {
   std::vector<glm::ivec3> voxels;
   for (int x = 4; x < 12; ++x)

@@ -115,7 +115,7 @@ const std::map<std::string, int> kWidelyIncluding{
     {"shaders/virtual_area_lights/gather.comp", 12},
     {"shaders/voxel_cone_tracing/add.comp", 11},
     {"shaders/voxel_cone_tracing/clipmap/clipmap_filter.comp", 11},
-    {"shaders/voxel_path_tracing/trace.comp", 11},
+    {"shaders/voxel_path_tracing/trace.comp", 12},
     {"shaders/voxel_cone_tracing/cones/bounce.comp", 29},
     {"shaders/voxel_cone_tracing/cones/gather.comp", 20},
     {"shaders/voxel_cone_tracing/views/lens.comp", 19},

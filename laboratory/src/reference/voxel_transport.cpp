@@ -24,6 +24,7 @@ struct BoxQuery : RTCIntersectContext {
   glm::dvec3 origin, direction;
   double reach = kInfinite;
   double enter = kInfinite, leave = 0.0;
+  BoxStop stop;
   std::uint32_t box = RTC_INVALID_GEOMETRY_ID;
 };
 
@@ -46,6 +47,7 @@ glm::dvec3 cosineAround(const glm::dvec3& normal, RandomStream& random) {
 
 struct VoxelBoxes::Tree {
   std::vector<glm::ivec3> voxels;
+  StopWithin stop;
   glm::dvec3 low;
   double size;
   RTCDevice device = nullptr;
@@ -88,8 +90,14 @@ struct VoxelBoxes::Tree {
       leave = std::min(leave, std::max(a, b));
     }
     if (!(enter <= leave) || enter > query.reach || enter >= query.enter) return;
+    std::optional<BoxStop> stop = BoxStop{enter, glm::dvec3(0.0)};
+    if (self.stop)
+      stop =
+          self.stop({self.voxels[arguments->primID], enter, leave, query.origin, query.direction, enter, {}});
+    if (!stop) return;
     query.enter = enter;
     query.leave = leave;
+    query.stop = *stop;
     query.box = arguments->primID;
     // Boxes behind this one are skipped, with a margin for rounding.
     auto* ray = RTCRayHitN_RayN(arguments->rayhit, arguments->N);
@@ -98,9 +106,10 @@ struct VoxelBoxes::Tree {
   }
 };
 
-VoxelBoxes::VoxelBoxes(std::span<const glm::ivec3> voxels, const GridPlacement& grid)
+VoxelBoxes::VoxelBoxes(std::span<const glm::ivec3> voxels, const GridPlacement& grid, StopWithin stop)
     : tree_(std::make_unique<Tree>()) {
   tree_->voxels.assign(voxels.begin(), voxels.end());
+  tree_->stop = std::move(stop);
   tree_->low = grid.low;
   tree_->size = grid.voxelSize;
   tree_->device = rtcNewDevice(nullptr);
@@ -143,8 +152,9 @@ std::optional<BoxHit> VoxelBoxes::first(const glm::dvec3& origin, const glm::dve
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(tree_->scene, &query, &ray);
-  if (query.box == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return BoxHit{tree_->voxels[query.box], query.enter, query.leave, origin, direction};
+  if (query.box == RTC_INVALID_GEOMETRY_ID || query.stop.end > reach) return std::nullopt;
+  return BoxHit{tree_->voxels[query.box], query.enter,      query.leave, origin, direction,
+                query.stop.end,           query.stop.normal};
 }
 
 namespace {
@@ -164,8 +174,8 @@ PathResult follow(const VoxelBoxes& boxes, BoxStart start, const BoxTransport& t
     const glm::dvec3 direction = cosineAround(start.normal, random);
     const double looked = bounce == 1 ? std::max(reach, transport.occlusionDistance) : reach;
     const std::optional<BoxHit> hit = boxes.first(start.place, direction, looked);
-    if (bounce == 1) result.open = !hit || hit->enter > transport.occlusionDistance;
-    if (!hit || hit->enter > reach) {
+    if (bounce == 1) result.open = !hit || hit->end > transport.occlusionDistance;
+    if (!hit || hit->end > reach) {
       result.light += throughput * transport.environment;
       break;
     }

@@ -21,18 +21,30 @@ struct BoxHit {
   double enter = 0.0;  ///< 0 where the ray begins in the box
   double leave = 0.0;
   glm::dvec3 origin, direction;  ///< of the ray, m
+  double end = 0.0;              ///< where the ray ends: `enter`, or at the surface within the box
+  glm::dvec3 normal{0.0};        ///< of that surface; zero: the ray ends at the box
   glm::dvec3 middle() const { return origin + 0.5 * (enter + leave) * direction; }
+  glm::dvec3 place() const { return origin + end * direction; }
 };
 
-/// The set voxels of a grid as boxes. The slabs of a box are tested in double precision.
+/// The surface within a box at which a ray ends, as in BoxHit.
+struct BoxStop {
+  double end = 0.0;
+  glm::dvec3 normal{0.0};
+};
+/// Tells where a ray ends within a box that it enters; nothing: it passes. Called by several threads at once.
+using StopWithin = std::function<std::optional<BoxStop>(const BoxHit&)>;
+
+/// The set voxels of a grid as boxes. The slabs of a box are tested in double precision. Rays end where they
+/// enter a box, or where `stop` says.
 class VoxelBoxes {
  public:
-  VoxelBoxes(std::span<const glm::ivec3> voxels, const GridPlacement& grid);
+  VoxelBoxes(std::span<const glm::ivec3> voxels, const GridPlacement& grid, StopWithin stop = {});
   ~VoxelBoxes();
   VoxelBoxes(VoxelBoxes&&) noexcept;
   VoxelBoxes& operator=(VoxelBoxes&&) noexcept;
 
-  /// The first box of a ray, met at `reach` at most.
+  /// The first box of a ray in which it ends, at `reach` at most.
   std::optional<BoxHit> first(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
  private:
