@@ -32,6 +32,15 @@ TEST_CASE("every seed and every past finding of the fuzzers is taken or refused 
     INFO(entry.name);
     CHECK(runAll(entry.name, entry.run) >= 3);
   }
+  // The folders of seeds are the list from which fuzzers are built and run.
+  const auto hasEntry = [](const std::string& name) {
+    return std::any_of(fuzz::entries().begin(), fuzz::entries().end(),
+                       [&](const fuzz::Entry& entry) { return entry.name == name; });
+  };
+  for (const auto& folder : std::filesystem::directory_iterator(sourceDirectory() / "tests/fuzz/seeds")) {
+    INFO(folder.path().filename());
+    CHECK(hasEntry(folder.path().filename().string()));
+  }
 }
 
 TEST_CASE("every committed scene and pipeline goes through the doors of the fuzzers") {
