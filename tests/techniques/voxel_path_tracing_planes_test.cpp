@@ -137,6 +137,36 @@ TEST_CASE("a ray that begins in a voxel with planes neither ends there nor is mo
   CHECK(arriving("hit", "plane") > arriving("hit", "box") + 0.3);
 }
 
+TEST_CASE("a path stays between a floor and a ceiling that are less than a voxel apart") {
+  SceneBuilder builder;
+  const int white = builder.lambert(kAlbedo);
+  builder.quad({-8, -0.6f, -8}, {0, 0, 16}, {16, 0, 0}, white);
+  builder.quad({-8, 0.3f, -8}, {16, 0, 0}, {0, 0, 16}, white);
+  builder.scene.environment = glm::vec3(1.0f);
+  const Voxelized voxels(builder, 16);
+  Gatherer paths = voxels.tracerAt({0, -0.1, 0}, {0, -1, 0});
+  // Moved out of the floor's voxel, it would go on above the ceiling, under the sky.
+  CHECK(paths.with({{"samples", 64}, {"bounces", 2}, {"offset", 0.1}, {"stop", "plane"}}).mean("arriving") <
+        0.1);
+}
+
+TEST_CASE("paths end so near the surface that a map shows it with a fifth of the tolerance") {
+  SceneBuilder builder = room();
+  builder.light(LightKind::point, glm::vec3(1.0f), {0.3, 0.2, 0.1});
+  const Voxelized voxels(builder, 16);
+  const auto map =
+      LonePass("reflective_shadow_maps.render", voxels.scene).out<ReflectiveShadowMap>("surfaces");
+  const auto arriving = [&](const Settings& settings) {
+    Gatherer paths = voxels.tracerAt({0, 1, 0}, {0, 1, 0});
+    paths.map(map);
+    return paths.with({{"samples", 64}, {"bounces", 1}}).with(settings).mean("arriving");
+  };
+  const double planes = arriving(kPlanes);
+  REQUIRE(planes > 0.0);
+  CHECK(arriving({{"stop", "plane"}, {"offset", 0.5}, {"tolerance", 0.2}}) == Approx(planes).epsilon(0.02));
+  CHECK(arriving({{"tolerance", 0.1}}) < 0.5 * arriving({}));
+}
+
 TEST_CASE("paths that end at boxes ignore the fragments, to the bit") {
   const Voxelized voxels(floorAndWall(), 16);
   const auto arriving = [&](bool connected) {
