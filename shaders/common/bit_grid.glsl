@@ -224,7 +224,7 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
   const int coarsest = 0;
 #endif
 #if PLANES
-  const int kFirst = 1;  // rays begin at a surface
+  const int kFirst = 0;  // rays begin at a surface, whose voxels they pass
 #else
   const int kFirst = 3;  // as published: the block around a surface is hardly ever empty at coarser levels
 #endif

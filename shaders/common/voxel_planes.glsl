@@ -21,15 +21,19 @@ uint packPlane(vec3 normal, float offset, bool turned) {
 
 // xyz: the normal, with 1 as the sum of its absolute components; w: the offset by that measure.
 vec4 unpackPlane(uint word) {
-  vec2 p = vec2(uvec2(word, word >> 11) & 2047u) / kNormalSteps - 1.0;
+  vec2 p = (vec2(uvec2(word, word >> 11) & 2047u) - kNormalSteps) * (1.0 / kNormalSteps);
   float z = 1.0 - abs(p.x) - abs(p.y);
   if (z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
-  return vec4(p, z, (float(word >> 22 & 511u) - 1.0) / kOffsetSteps - 0.5);
+  return vec4(p, z, (float(word >> 22 & 511u) - (0.5 * kOffsetSteps + 1.0)) * (1.0 / kOffsetSteps));
 }
+
+// A texel of planesOfVoxels: the word of a voxel's only plane, which faces along its normal, so that the highest bit is free; or this bit and
+// the place of both words in voxelPlanes; or 0 where rays end at the voxel's box. Most voxels have one plane, which then takes one fetch.
+const uint kTwoPlanes = 0x80000000u;
 
 #ifdef LUMIVOX_BIT_GRID
 layout(std430, binding = 10) readonly buffer VoxelPlanes { uvec2 voxelPlanes[]; };
-layout(binding = 14) uniform usampler3D planeSlots;  // of a voxel its slot from 1 on; 0: it has no planes
+layout(binding = 14) uniform usampler3D planesOfVoxels;
 
 // Planes of neighbouring voxels do not join exactly where a surface is curved, nor do the two of an edge after packing, voxels.
 const float kPlaneSlack = 1.0 / 16.0;
@@ -38,44 +42,55 @@ const float kPlaneSlack = 1.0 / 16.0;
 // it may begin behind the mean plane.
 const float kNoBacks = 0.5;
 
-// Where the ray meets a plane within the voxel and behind the other plane, if there is one; kNever: nowhere.
-float meetsPlane(uint word, vec4 plane, bool clipped, vec4 other, vec3 fromCentre) {
-  float slope = dot(plane.xyz, bitDirection), t = (plane.w - dot(plane.xyz, fromCentre)) / slope;
-  vec3 place = fromCentre + t * bitDirection;
-  // Written so that a ray along the plane, whose t is none, meets it nowhere.
-  bool meets = t >= 0.0 && all(lessThanEqual(abs(place), vec3(0.5 + kPlaneSlack)));
-  if (clipped) meets = meets && dot(other.xyz, place) <= other.w + kPlaneSlack;
-  return meets && (t >= kNoBacks || (slope > 0.0) == (word >> 31 != 0u)) ? t : kNever;
+// A plane seen from the ray that is followed.
+struct PlaneAlong {
+  float slope;  // of the ray along the normal
+  float ahead;  // along the normal, from the ray's start to the plane
+};
+PlaneAlong alongRay(vec4 plane, vec3 fromCentre) {
+  return PlaneAlong(dot(plane.xyz, bitDirection), plane.w - dot(plane.xyz, fromCentre));
 }
 
-// Of a voxel its slot from 1 on; 0: it has no planes, and rays end at its box.
-uint slotOfPlanes(ivec3 voxel) {
-  uint slot = texelFetch(planeSlots, voxel, 0).r;
-  return slot <= uint(voxelPlanes.length()) ? slot : 0u;
+// Whether the ray meets the plane of a word at a t within the voxel. Written so that a ray along the plane, whose t is none, meets it nowhere.
+bool meetsWithin(uint word, float slope, float t, vec3 fromCentre) {
+  return t >= 0.0 && all(lessThanEqual(abs(fromCentre + t * bitDirection), vec3(0.5 + kPlaneSlack))) &&
+         (t >= kNoBacks || (slope > 0.0) == (word >> 31 != 0u));
 }
 
-// Where the ray that is followed meets a plane of a voxel with a slot: the normal in xyz, of any length, and the t in w; kNever: it passes.
-vec4 planeMetIn(ivec3 voxel, uint slot) {
-  uvec2 words = voxelPlanes[slot - 1u];
+// The texel of a voxel; 0: it has no planes, and rays end at its box.
+uint planesOf(ivec3 voxel) { return texelFetch(planesOfVoxels, voxel, 0).r; }
+
+// Where the ray that is followed meets a plane of a voxel with this texel: the normal in xyz, of any length, and the t in w; kNever: it
+// passes.
+vec4 planeMetIn(ivec3 voxel, uint texel) {
   vec3 fromCentre = bitOrigin - (vec3(voxel) + 0.5);
+  bool two = texel >= kTwoPlanes;
+  uvec2 words = two ? voxelPlanes[texel & ~kTwoPlanes] : uvec2(texel, 0u);
   vec4 first = unpackPlane(words.x);
-  if (words.y == 0u) return vec4(first.xyz, meetsPlane(words.x, first, false, first, fromCentre));
+  PlaneAlong a = alongRay(first, fromCentre);
+  float t = a.ahead / a.slope;
+  bool meets = meetsWithin(words.x, a.slope, t, fromCentre);
+  if (!two) return vec4(first.xyz, meets ? t : kNever);
+  // The surface of each plane is its part behind the other.
   vec4 second = unpackPlane(words.y);
-  float atFirst = meetsPlane(words.x, first, true, second, fromCentre), atSecond = meetsPlane(words.y, second, true, first, fromCentre);
-  return atSecond < atFirst ? vec4(second.xyz, atSecond) : vec4(first.xyz, atFirst);
+  PlaneAlong b = alongRay(second, fromCentre);
+  float other = b.ahead / b.slope;
+  if (!(meets && t * b.slope <= b.ahead + kPlaneSlack)) t = kNever;
+  if (!(meetsWithin(words.y, b.slope, other, fromCentre) && other * a.slope <= a.ahead + kPlaneSlack)) other = kNever;
+  return other < t ? vec4(second.xyz, other) : vec4(first.xyz, t);
 }
 
 // The t at which the ray ends in an occupied voxel that it enters at a t; kNever: it passes.
 float stopIn(ivec3 voxel, float enters) {
-  uint slot = slotOfPlanes(voxel);
-  return slot == 0u ? enters : planeMetIn(voxel, slot).w;
+  uint texel = planesOf(voxel);
+  return texel == 0u ? enters : planeMetIn(voxel, texel).w;
 }
 
 // The unit normal of the plane at which the ray ended in a voxel, on the side that the ray came from; zero: it ended at the box.
 vec3 normalOfStop(ivec3 voxel) {
-  uint slot = slotOfPlanes(voxel);
-  if (slot == 0u) return vec3(0.0);
-  vec3 normal = normalize(planeMetIn(voxel, slot).xyz);
+  uint texel = planesOf(voxel);
+  if (texel == 0u) return vec3(0.0);
+  vec3 normal = normalize(planeMetIn(voxel, texel).xyz);
   return dot(normal, bitDirection) > 0.0 ? -normal : normal;
 }
 

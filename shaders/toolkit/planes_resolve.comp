@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "toolkit/slots.glsl"
 layout(std430, binding = 6) readonly buffer PlaneSums { PlaneSum planeSums[]; };
 layout(std430, binding = 7) writeonly buffer VoxelPlanes { uvec2 voxelPlanes[]; };
+layout(binding = 0, r32ui) uniform writeonly uimage3D slots;  // becomes planesOfVoxels of common/voxel_planes.glsl
 
 struct Group {
   bool any;
@@ -35,5 +36,7 @@ void main() {
   if (!slotHere(slot, voxel)) return;
   Group first = groupOf(slot, 0u), second = groupOf(slot, 1u);
   uvec2 planes = uvec2(planeOf(first, second), planeOf(second, first));
-  voxelPlanes[slot] = planes.x != 0u ? planes : planes.yx;
+  bool two = planes.x != 0u && planes.y != 0u;
+  if (two) voxelPlanes[slot] = planes;
+  imageStore(slots, voxel, uvec4(two ? kTwoPlanes | slot : planes.x | planes.y));
 }

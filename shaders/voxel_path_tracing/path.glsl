@@ -122,7 +122,7 @@ bool isStuck(vec3 place) {
   ivec3 voxel = ivec3(floor(place));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return false;
 #if PLANES
-  if (slotOfPlanes(voxel) != 0u) return false;
+  if (planesOf(voxel) != 0u) return false;
 #endif
   uvec4 stack = texelFetch(bitStacks, ivec3(voxel.xy, voxel.z / kStackBits), 0);
   return (stack[voxel.z >> 5 & 3] >> (voxel.z & 31) & 1u) != 0u;

@@ -19,10 +19,10 @@ namespace code = shaders::toolkit;
 
 }  // namespace
 
-VoxelPlanes::VoxelPlanes(gpu::TextureRef slots, gpu::BufferRef planes)
+VoxelPlanes::VoxelPlanes(gpu::TextureRef ofVoxels, gpu::BufferRef planes)
     : BindingSet{shader::StorageSlot{"VoxelPlanes"}(planes),
-                 shader::SampledSlot{"planeSlots"}(slots, gpu::Sampling::nearest)},
-      slots_(std::move(slots)),
+                 shader::SampledSlot{"planesOfVoxels"}(ofVoxels, gpu::Sampling::nearest)},
+      ofVoxels_(std::move(ofVoxels)),
       planes_(std::move(planes)) {}
 
 RayStop::RayStop(Pass* pass)

@@ -14,10 +14,10 @@ namespace lumivox {
 class VoxelPlanes : public shader::BindingSet {
  public:
   VoxelPlanes() = default;  ///< rays end at boxes, without planes
-  VoxelPlanes(gpu::TextureRef slots, gpu::BufferRef planes);
+  VoxelPlanes(gpu::TextureRef ofVoxels, gpu::BufferRef planes);
 
  private:
-  gpu::TextureRef slots_;
+  gpu::TextureRef ofVoxels_;
   gpu::BufferRef planes_;
 };
 
