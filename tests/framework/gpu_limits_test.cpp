@@ -275,6 +275,14 @@ TEST_CASE("every packed module is valid SPIR-V for OpenGL 4.5, with fast arithme
   CHECK_FALSE(tools.Validate(broken));
 }
 
+TEST_CASE("all packs together take less than 4 MB, since the variants of a program are compressed together") {
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::binaryDirectory() / "lib"))
+    if (entry.path().extension() == ".shaderpack") bytes += std::filesystem::file_size(entry.path());
+  CHECK(bytes > 500'000);
+  CHECK(bytes < 4'000'000);
+}
+
 TEST_CASE("every limit that is asked for at the start is in the documentation, with its number") {
   std::ifstream file(test::sourceDirectory() / "docs/gpu.md");
   const std::string text((std::istreambuf_iterator<char>(file)), {});

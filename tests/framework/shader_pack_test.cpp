@@ -2,6 +2,8 @@
 #include <lumivox/base/file.h>
 #include <lumivox/shader/pack.h>
 
+#include <set>
+
 #include "support/facts.h"
 #include "support/support.h"
 
@@ -26,8 +28,8 @@ ShaderPack smallPack() {
                       {{1, 1, 0}, {{gpu::Stage::compute, 1}}, {0, 1}}};
   program.possible = 8;
   pack.programs = {program};
-  pack.codes = {PackedCode::of(hashOf("a"), std::vector<std::uint32_t>{0x07230203u, 1, 2, 3}),
-                PackedCode::of(hashOf("b"), std::vector<std::uint32_t>{4, 5})};
+  const std::vector<std::uint32_t> a{0x07230203u, 1, 2, 3}, b{4, 5};
+  pack.codes = compressed({{hashOf("a"), a}, {hashOf("b"), b}});
   return pack;
 }
 
@@ -75,6 +77,37 @@ TEST_CASE("a pack comes back as it was written") {
   writeShaderPack(directory.path() / "again.shaderpack", smallPack());
   CHECK(readFile(directory.path() / "again.shaderpack") == readFile(file));
   CHECK(readShaderPack(directory.path() / "again.shaderpack").hash == pack.hash);
+}
+
+TEST_CASE("codes come out of their blocks, whether they are larger than a block, small, or many") {
+  std::vector<std::vector<std::uint32_t>> plain;
+  std::uint32_t word = 1;
+  for (const std::size_t words : {3u, 500000u, 7u, 200000u, 200000u, 1u}) {
+    std::vector<std::uint32_t>& code = plain.emplace_back(words);
+    for (std::uint32_t& value : code) value = word = word * 1664525u + 1013904223u;
+  }
+  ShaderPack pack = smallPack();
+  std::vector<PlainCode> codes;
+  for (const std::vector<std::uint32_t>& code : plain) codes.push_back({Hasher().add(code).finish(), code});
+  pack.codes = compressed(codes);
+  const test::TemporaryDirectory directory;
+  writeShaderPack(directory.path() / "large.shaderpack", pack);
+  const ShaderPack read = readShaderPack(directory.path() / "large.shaderpack");
+  REQUIRE(read.codes.size() == plain.size());
+  std::set<const Compressed*> blocks;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    CHECK(read.codes[i].hash == codes[i].hash);
+    CHECK(read.codes[i].spirv() == plain[i]);
+    blocks.insert(read.codes[i].block.get());
+  }
+  CHECK(blocks.size() > 2);
+  CHECK(blocks.size() < plain.size());
+}
+
+TEST_CASE("the seed that the fuzzer of packs begins with is a pack of this version") {
+  constexpr std::size_t kHeader = 8 + 4 + 8 + 16;
+  CHECK(readFile(test::sourceDirectory() / "tests/fuzz/seeds/shader_pack/small") ==
+        "%%CONTENT\n" + wholePack().substr(kHeader));
 }
 
 TEST_CASE("a pack that is cut anywhere, or has any byte changed, is refused") {

@@ -169,7 +169,7 @@ void shaderPack(std::string_view input) {
     const std::string_view content = input.substr(kContent.size());
     const ContentHash hash = hashOf(content);
     const std::uint64_t size = content.size();
-    const std::uint32_t version = 2;
+    const std::uint32_t version = shader::kPackVersion;
     pack = "LVXSHPK\n";
     pack.append(reinterpret_cast<const char*>(&version), sizeof version);
     pack.append(reinterpret_cast<const char*>(&size), sizeof size);

@@ -368,19 +368,19 @@ class Merger {
   bool sameGroupSize_ = true;
 };
 
-/// Stores each distinct SPIR-V module once.
+/// Each distinct SPIR-V module once, in the order of the programs. The artifacts must outlive it.
 class CodeTable {
  public:
-  explicit CodeTable(std::vector<shader::PackedCode>& codes) : codes_(codes) {}
   std::size_t add(const Artifact& artifact) {
     const ContentHash hash = Hasher().add(artifact.spirv).finish();
     const auto [known, isNew] = index_.emplace(hash, codes_.size());
-    if (isNew) codes_.push_back(shader::PackedCode::of(hash, artifact.spirv));
+    if (isNew) codes_.push_back({hash, artifact.spirv});
     return known->second;
   }
+  std::vector<shader::PackedCode> compressed() const { return shader::compressed(codes_); }
 
  private:
-  std::vector<shader::PackedCode>& codes_;
+  std::vector<shader::PlainCode> codes_;
   std::map<ContentHash, std::size_t> index_;
 };
 
@@ -425,7 +425,7 @@ BuildResult buildPack(const BuildOptions& options) {
   runJobs(options, jobs, findings);
   findings.throwIfAny();
 
-  CodeTable codes(result.pack.codes);
+  CodeTable codes;
   for (const auto& plan : plans) {
     PackedProgram& program = result.pack.programs.emplace_back();
     program.name = plan->name;
@@ -440,6 +440,7 @@ BuildResult buildPack(const BuildOptions& options) {
     }
   }
   findings.throwIfAny();
+  result.pack.codes = codes.compressed();
   for (const auto& job : jobs) {
     ++(job->reused ? result.reused : result.compiled);
     if (!job->artifact.warnings.empty()) result.warnings += job->artifact.warnings + "\n";

@@ -20,12 +20,6 @@ std::string zlibStream(std::string_view bytes, int level) {
   return stream;
 }
 
-Deflated Deflated::of(std::string_view bytes) {
-  // Measured on the committed shaders: level 12 takes ten times as long for packs that are 5 % smaller.
-  constexpr int kLevel = 8;
-  return ofStream(zlibStream(bytes, kLevel), bytes.size());
-}
-
 Deflated Deflated::ofStream(std::string stream, std::uint64_t expandedBytes) {
   auto holder = std::make_shared<const std::string>(std::move(stream));
   return {*holder, expandedBytes, std::move(holder)};

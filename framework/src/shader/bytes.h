@@ -27,10 +27,10 @@ class ByteWriter {
   void value(const std::vector<T>& values) {
     each(values, [this](const T& v) { value(v); });
   }
-  template <class T, class Write>
-  void each(const std::vector<T>& values, Write&& write) {
+  template <class Values, class Write>
+  void each(const Values& values, Write&& write) {
     value(static_cast<std::uint32_t>(values.size()));
-    for (const T& v : values) write(v);
+    for (const auto& v : values) write(v);
   }
   const std::string& bytes() const { return bytes_; }
 

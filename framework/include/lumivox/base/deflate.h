@@ -18,7 +18,6 @@ struct Deflated {
   /// The stream, in a string of its own or in a part of a file's string that it shares with others.
   std::shared_ptr<const std::string> holder;
 
-  static Deflated of(std::string_view bytes);
   static Deflated ofStream(std::string stream, std::uint64_t expandedBytes);
   /// Error when the stream is damaged or holds another number of bytes.
   std::string expanded() const;

@@ -10,12 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/deflate.h"
+#include "lumivox/base/compressed.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/shader/slots.h"
 
 namespace lumivox::shader {
+
+/// Of the files; packs of another version are refused.
+constexpr std::uint32_t kPackVersion = 4;
 
 /// An axis by which a variant is chosen. The macro of the axis holds the number itself where the values are
 /// numbers, and 0, 1, 2... where they are words; then every word has a macro of its own too: axis LIGHT with
@@ -82,17 +85,25 @@ struct PackedProgram {
   std::string text(const std::vector<int>& values) const;
 };
 
-/// Code shared by all variants whose SPIR-V is the same. It is kept deflated; who uses it expands it.
+/// Code shared by all variants whose SPIR-V is the same. Codes are compressed together, since variants of a
+/// program are much alike; who uses one expands its block.
 struct PackedCode {
-  ContentHash hash;   ///< of the SPIR-V
-  Deflated deflated;  ///< the SPIR-V
+  ContentHash hash;                         ///< of the SPIR-V
+  std::shared_ptr<const Compressed> block;  ///< shared with the codes beside it
+  std::uint64_t first = 0, bytes = 0;       ///< the SPIR-V's place in the expanded block
 
-  static PackedCode of(const ContentHash& hash, std::span<const std::uint32_t> spirv);
   std::vector<std::uint32_t> spirv() const;
   /// GLSL 4.50 by SPIRV-Cross from the SPIR-V, for devices that take no SPIR-V; specialisation constants are
   /// SPIRV_CROSS_CONSTANT_ID_n macros. Made anew at each call.
   std::string glsl() const;
 };
+
+struct PlainCode {
+  ContentHash hash;
+  std::span<const std::uint32_t> spirv;
+};
+/// Compresses codes in this order, those of one program beside each other.
+std::vector<PackedCode> compressed(const std::vector<PlainCode>& codes);
 
 struct ShaderPack {
   std::string technique;
