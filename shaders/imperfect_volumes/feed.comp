@@ -1,7 +1,8 @@
 #version 450
 // Between two bounces: occupied voxels reflect the light that arrives at them. Mavridis & Papaioannou 2011, end of Sec. 3.3, alternate two
 // buffers and do not say how light is reflected. Here each side of a voxel's surface emits its
-// irradiance, times albedo / pi, into its half space.
+// irradiance, times albedo / pi, into its half space. DIRECT: adds the direct light that the voxels reflect.
+#pragma lumivox axis DIRECT 0 1
 #define VOLUMES 3
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "reconstruct.glsl"
@@ -12,6 +13,12 @@ layout(binding = 2) uniform sampler3D albedo;
 layout(binding = 0, rgba32f) uniform writeonly image3D redImage;
 layout(binding = 1, rgba32f) uniform writeonly image3D greenImage;
 layout(binding = 2, rgba32f) uniform writeonly image3D blueImage;
+#if DIRECT
+layout(std140, binding = 0) uniform Beside { float directUnit; };  // radiance of the number 1, W/(sr m^2)
+layout(binding = 3) uniform sampler3D directRed;
+layout(binding = 4) uniform sampler3D directGreen;
+layout(binding = 10) uniform sampler3D directBlue;
+#endif
 
 // Radiance that the side of a normal reflects, W/(sr m^2).
 vec3 sentInto(ivec3 voxel, vec3 normal, vec3 reflects) {
@@ -32,7 +39,14 @@ void main() {
   vec3 reflects = texelFetch(albedo, voxel, 0).rgb;
   vec3 front = sentInto(voxel, normal, reflects), back = sentInto(voxel, -normal, reflects);
   vec3 both = 2.0 * kPi * kY0 * (front + back), difference = kPi * kY1 * (front - back);
-  imageStore(redImage, voxel, vec4(both.r, difference.r * normal.yzx));
-  imageStore(greenImage, voxel, vec4(both.g, difference.g * normal.yzx));
-  imageStore(blueImage, voxel, vec4(both.b, difference.b * normal.yzx));
+  vec4 redSum = vec4(both.r, difference.r * normal.yzx), greenSum = vec4(both.g, difference.g * normal.yzx),
+       blueSum = vec4(both.b, difference.b * normal.yzx);
+#if DIRECT
+  redSum += directUnit * texelFetch(directRed, voxel, 0);
+  greenSum += directUnit * texelFetch(directGreen, voxel, 0);
+  blueSum += directUnit * texelFetch(directBlue, voxel, 0);
+#endif
+  imageStore(redImage, voxel, redSum);
+  imageStore(greenImage, voxel, greenSum);
+  imageStore(blueImage, voxel, blueSum);
 }

@@ -179,6 +179,9 @@ class MarchPass : public Marching {
   In<AttributeGrid> attributes{
       this, "attributes", Presence::optional,
       "mean normals and albedos of the voxels; needed unless 'source harmonics' and one bounce"};
+  In<ShGrid> before{
+      this, "before", Presence::history,
+      "light of the frame before, 'carried' of this pass: surfaces reflect what arrived then beside direct light, so that frames in a row come to all bounces; 'bounces' counts those of the first frame"};
   Param<Source> source{
       this, "source", Source::surface,
       "radiance of a hit; surface: of the side that the ray sees, exact for a Lambert wall; harmonics: of two bands, 1/2 + 3/4 cos in place of 1",
@@ -190,18 +193,23 @@ class MarchPass : public Marching {
       published(Feed::printed)};
   Out<ShGrid> incoming{this, "incoming", Contributes::nothing, Needs::anyLight,
                        "radiance that arrives in each voxel from all sides, of all bounces"};
+  Out<ShGrid> carried{this, "carried", Contributes::nothing, Needs::anyLight,
+                      "the same, in the voxels that surfaces read too: 'before' of the next frame"};
 
   Reads readsFrom() const override { return Reads::environment; }
   int indirectBounces() const override { return bounces; }
   bool uses(const InBase& input) const override {
-    return Marching::uses(input) && (&input != &attributes || readsAttributes());
+    return Marching::uses(input) && (&input != &attributes || readsAttributes()) &&
+           (&input != &before || feed != Feed::printed);
   }
   bool sendsBands() const { return source == Source::harmonics || feed == Feed::printed; }
-  bool readsAttributes() const { return !sendsBands() || bounces > 1; }
-  bool readsOpacity() const override { return Marching::readsOpacity() || bounces > 1; }
+  /// Whether surfaces read the light that arrives, for bounces of this frame or of the next one.
+  bool surfacesRead() const { return bounces > 1 || carried.wanted(); }
+  bool readsAttributes() const { return !sendsBands() || surfacesRead(); }
+  bool readsOpacity() const override { return Marching::readsOpacity() || surfacesRead(); }
 
   void markMore(PassContext& frame, const shader::BindingSet& marks) override {
-    if (bounces == 1) return;
+    if (!surfacesRead()) return;
     frame.dispatch(frame.program(mark_voxels::Variant{},
                                  neighbours.in(mark_voxels::Constants{.feedsOwn = feed != Feed::front})),
                    {marks, mark_voxels::opacity(opacity->opacity, gpu::Sampling::nearest),
@@ -220,25 +228,51 @@ class MarchPass : public Marching {
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;
     result.readFor = from.readFor;
+    if (const ShGrid::Level* const earlier = lightBefore(from); earlier != nullptr) {
+      const auto both = emptyVolumes(frame, "direct light and light of the frame before, reflected");
+      reflectAgain(frame, *earlier, both, &sent, sentUnit);
+      result.levels.push_back({grid(), arriving(frame, {grid(), both}, 1.0f, from, 0)});
+      deliver(result);
+      return;
+    }
     result.levels.push_back({grid(), arriving(frame, sent, sentUnit, from, 0)});
     const auto& sum = result.levels.front().coefficients;
     if (feed == Feed::printed) {
       for (int bounce = 1; bounce < bounces; ++bounce)
         result.levels.front().coefficients = arriving(frame, result.levels.front(), 1.0f, from, bounce);
-      incoming = result;
+      deliver(result);
       return;
     }
-    ShGrid::Level before = result.levels.front();
+    ShGrid::Level latest = result.levels.front();
     std::array<gpu::TextureRef, 3> passedOn;
     for (int bounce = 1; bounce < bounces; ++bounce) {
       if (!passedOn[0]) passedOn = emptyVolumes(frame, "radiance that is reflected again");
-      reflectAgain(frame, before, passedOn);
-      before.coefficients = arriving(frame, {grid(), passedOn}, 1.0f, from, bounce);
+      reflectAgain(frame, latest, passedOn);
+      latest.coefficients = arriving(frame, {grid(), passedOn}, 1.0f, from, bounce);
       for (std::size_t i = 0; i < 3; ++i)
         frame.dispatch(frame.program(add::kProgram),
-                       {add::bounceImage(before.coefficients[i]), add::sumImage(sum[i])}, grid().resolution);
+                       {add::bounceImage(latest.coefficients[i]), add::sumImage(sum[i])}, grid().resolution);
     }
+    deliver(result);
+  }
+
+  void deliver(const ShGrid& result) {
     incoming = result;
+    ShGrid further = result;
+    if (!result.readFor.empty()) further.readFor = readForSurfaces(result.readFor);
+    carried = further;
+  }
+
+  /// Rays begin in the voxels of visible surfaces, and with 'carried' in those of all surfaces.
+  static std::string readForSurfaces(const std::string& readFor) { return readFor + " on all surfaces"; }
+
+  /// After a frame with n reflections one gathering gives n + 1: what arrived then is reflected with the
+  /// direct light, and no bounce counts twice. Null where there is no such light in this grid.
+  const ShGrid::Level* lightBefore(const Begins& from) const {
+    if (!before.present() || feed == Feed::printed) return nullptr;
+    const auto [level, unit] =
+        volumeOf(before, from.readFor.empty() ? std::string() : readForSurfaces(from.readFor));
+    return level.grid == grid() ? &before->levels.front() : nullptr;
   }
 
   std::array<gpu::TextureRef, 3> emptyVolumes(PassContext& frame, const char* label) const {
@@ -267,17 +301,25 @@ class MarchPass : public Marching {
     return volumes;
   }
 
+  /// What surfaces reflect of the light that arrives at them, and of `direct` light, if any.
   void reflectAgain(PassContext& frame, const ShGrid::Level& light,
-                    const std::array<gpu::TextureRef, 3>& passedOn) const {
-    frame.dispatch(
-        frame.program(feed::Variant{}, neighbours.in(feed::Constants{.feedsOwn = feed == Feed::own})),
-        {volumeBinding(grid(), occupied), neighbours.binding(), ShLevelBinding(light, gpu::Sampling::linear),
-         feed::opacityAround(opacity->opacity, gpu::Sampling::nearest),
-         feed::normalsAround(attributes->normal, gpu::Sampling::nearest),
-         feed::opacity(opacity->opacity, gpu::Sampling::nearest),
-         feed::meanNormals(attributes->normal, gpu::Sampling::nearest),
-         feed::albedo(attributes->albedo, gpu::Sampling::nearest), images(passedOn)},
-        grid().resolution);
+                    const std::array<gpu::TextureRef, 3>& passedOn, const ShGrid::Level* direct = nullptr,
+                    float directUnit = 1.0f) const {
+    shader::BindingSet beside;
+    if (direct != nullptr)
+      beside = {feed::beside({directUnit}), feed::directRed(direct->coefficients[0], gpu::Sampling::nearest),
+                feed::directGreen(direct->coefficients[1], gpu::Sampling::nearest),
+                feed::directBlue(direct->coefficients[2], gpu::Sampling::nearest)};
+    frame.dispatch(frame.program(feed::Variant{.direct = direct != nullptr},
+                                 neighbours.in(feed::Constants{.feedsOwn = feed == Feed::own})),
+                   {beside, volumeBinding(grid(), occupied), neighbours.binding(),
+                    ShLevelBinding(light, gpu::Sampling::linear),
+                    feed::opacityAround(opacity->opacity, gpu::Sampling::nearest),
+                    feed::normalsAround(attributes->normal, gpu::Sampling::nearest),
+                    feed::opacity(opacity->opacity, gpu::Sampling::nearest),
+                    feed::meanNormals(attributes->normal, gpu::Sampling::nearest),
+                    feed::albedo(attributes->albedo, gpu::Sampling::nearest), images(passedOn)},
+                   grid().resolution);
   }
 };
 
