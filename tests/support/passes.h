@@ -63,6 +63,11 @@ class LonePass {
     ran_ = false;
     return *this;
   }
+  LonePass& keepOnly(const std::string& output) {
+    harness_->keepOnly(output);
+    ran_ = false;
+    return *this;
+  }
   template <class Port>
   LonePass& in(const std::string& input, Port value) {
     harness_->setInput(input, std::move(value));

@@ -302,6 +302,8 @@ TEST_CASE("only the voxels that surfaces read are filled, and the picture is the
         const Settings reads{{"voxels", voxels}, {"filter", filter}};
         LonePass march = marching(room, {{"rays", 30}, {"bounces", bounces}});
         march.with(reads).in("gbuffer", seen(points));
+        const ShGrid further = march.out<ShGrid>("incoming");
+        march.keepOnly("incoming");
         const ShGrid part = march.out<ShGrid>("incoming");
         march.with({{"cover", "all"}});
         const ShGrid all = march.out<ShGrid>("incoming");
@@ -312,6 +314,9 @@ TEST_CASE("only the voxels that surfaces read are filled, and the picture is the
           return values.size() - static_cast<std::size_t>(std::count(values.begin(), values.end(), 0.0f));
         };
         if (bounces == 1.0) CHECK(filled(part) < filled(all) / 4);
+        // 'carried' is for surfaces that no pixel sees, too.
+        CHECK(gathered(room, further, points, reads) == gathered(room, all, points, reads));
+        if (bounces == 1.0) CHECK(filled(further) > filled(part));
         CHECK(all.readFor.empty());
         CHECK_FALSE(part.readFor.empty());
       }

@@ -1,6 +1,8 @@
 // One pass alone, on inputs made by a test.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lumivox/base/error.h"
 #include "pipeline/context.h"
 #include "pipeline/graph.h"
@@ -105,6 +107,13 @@ OutBase& PassHarness::outputNamed(const std::string& name) {
     return *output;
   }
   throw Error(fmt::format("the pass has no output '{}'", name));
+}
+
+void PassHarness::keepOnly(const std::string& output) {
+  const std::vector<OutBase*>& outputs = state_->pass->outputs();
+  if (std::none_of(outputs.begin(), outputs.end(), [&](const OutBase* one) { return one->name() == output; }))
+    throw Error(fmt::format("the pass has no output '{}'", output));
+  for (OutBase* one : outputs) one->wanted_ = one->name() == output;
 }
 
 void PassHarness::run(std::uint64_t seed) {

@@ -275,6 +275,8 @@ class PassHarness {
     *source = std::move(value);
     connectInput(name, std::move(source));
   }
+  /// Of the outputs only this one is wanted, as in a pipeline that reads no other.
+  void keepOnly(const std::string& output);
   /// Carries histories and kept results from run to run, as in frames in which nothing changes.
   void accumulate();
   void run(std::uint64_t seed = 1);
