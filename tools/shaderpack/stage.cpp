@@ -9,6 +9,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <mutex>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 #include <sstream>
@@ -177,6 +178,10 @@ std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, con
 /// Numbers ids by what they name, so that the same code of two variants has the same words: the variants of a
 /// pack take a tenth of the room that they take with ids in the order of their first use.
 std::vector<std::uint32_t> withLikeIds(std::vector<std::uint32_t> words) {
+  // The first call fills tables that all share; it takes milliseconds, where optimising takes most of a
+  // second.
+  static std::mutex one;
+  const std::lock_guard lock(one);
   spv::spirvbin_t().remap(words, spv::spirvbin_t::MAP_ALL);
   return words;
 }
