@@ -176,7 +176,7 @@ std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, con
 }
 
 /// Numbers ids by what they name, so that the same code of two variants has the same words: the variants of a
-/// pack take a tenth of the room that they take with ids in the order of their first use.
+/// pack take a quarter of the room that they take with ids in the order of their first use.
 std::vector<std::uint32_t> withLikeIds(std::vector<std::uint32_t> words) {
   // The first call fills tables that all share; it takes milliseconds, where optimising takes most of a
   // second.

@@ -16,8 +16,9 @@ namespace {
 constexpr std::string_view kMagic{"LVXSHPK\n", 8};
 constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 16;  // magic, version, size and hash of the content
 constexpr std::uint64_t kLimitBytes = std::uint64_t{1} << 30;
-// Codes that are compressed together. Measured on the cone tracer's: blocks of 4 MiB take half of the room,
-// and longer to expand than a program takes to be compiled from its cache.
+// Codes that are compressed together. Measured on the cone tracer's and near field's: 1 MiB expands in 0.3
+// ms, once for each program that is loaded; 4 MiB take about half of the room in the file, 1/4 MiB 2.3
+// and 2.8 times as much.
 constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 20;
 
 // One list of members for both directions: Archive is a ByteWriter or a ByteReader.
