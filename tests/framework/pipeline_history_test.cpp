@@ -45,6 +45,20 @@ TEST_CASE("a history is what a later pass made in the frame before, or the pass 
   }
 }
 
+TEST_CASE("a pass whose input of the last frame is not connected is not run again while nothing changes") {
+  FramesFixture f;
+  for (const bool connected : {false, true}) {
+    PipelineExecutor executor =
+        f.executor(std::string("pass light toy.paint { }\npass back toy.feedback { light light ") +
+                       (connected ? "previous back.radiance " : "") + "}\noutput o back.radiance",
+                   accumulating());
+    executor.render(0.0, 0);
+    f.techniques.takeRan();
+    executor.render(0.0, 1);
+    CHECK(f.techniques.takeRan() == (connected ? Ran{"feedback"} : Ran{}));
+  }
+}
+
 TEST_CASE("what only a history wants is made for its sake, and not without accumulation") {
   FramesFixture f;
   const char* text =

@@ -123,7 +123,8 @@ const std::map<std::string, int> kWidelyIncluding{
     {"shaders/voxel_cone_tracing/dense/inject.comp", 19},
     {"shaders/voxel_cone_tracing/dense/lobe_sums.comp", 12},
     {"shaders/voxel_cone_tracing/octree/octree_filter.comp", 12},
-    {"shaders/voxel_cone_tracing/octree/octree_resolve.comp", 11},
+    {"shaders/voxel_cone_tracing/dense/resolve.comp", 11},
+    {"shaders/voxel_cone_tracing/octree/octree_resolve.comp", 12},
     {"shaders/voxelization/points.comp", 11}};
 
 std::string joined(const Violations& violations) {

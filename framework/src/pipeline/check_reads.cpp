@@ -125,7 +125,7 @@ class Comparison {
     const BoundPass& bound = graph_.passes[pass];
     if (!ran_[bound.name])
       return fmt::format("it was not run again: it reads more than its readsFrom() declares ({})",
-                         readsText(readsOf(*bound.object)));
+                         readsText(readsOf(bound)));
     std::vector<std::string> suspects;
     addStaleSources(pass, suspects);
     if (!suspects.empty()) return fmt::format("it ran, after {}", fmt::join(suspects, ", "));
@@ -144,7 +144,7 @@ class Comparison {
         suspects.push_back(
             fmt::format("{}, which was not run again though it may read more than its readsFrom() "
                         "says ({})",
-                        bound.name, readsText(readsOf(*bound.object))));
+                        bound.name, readsText(readsOf(bound))));
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <exception>
@@ -10,7 +11,6 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "pipeline/prune.h"
 
 namespace lumivox {
 
@@ -81,7 +81,9 @@ void FrameContext::tellReused(const std::string& what) {
 }
 
 void FrameContext::requireHistory(const char* called) const {
-  if (pass_ != nullptr && !reads(readsOf(*pass_), Reads::history))
+  if (pass_ == nullptr || reads(pass_->readsFrom(), Reads::history)) return;
+  if (std::ranges::none_of(pass_->inputs(),
+                           [](const InBase* input) { return input->presence() == Presence::history; }))
     throw Error(fmt::format("it calls {}, but its readsFrom() does not return Reads::history", called));
 }
 

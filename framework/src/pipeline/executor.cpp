@@ -164,7 +164,7 @@ Reads PipelineExecutor::State::changesSince(const SceneSnapshot& snapshot, int f
 bool PipelineExecutor::State::readsWhatChanged(std::size_t pass, Reads changed,
                                                const SceneSnapshot& snapshot) const {
   const Pass& object = *graph.passes[pass].object;
-  const Reads read = readsOf(object);
+  const Reads read = readsOf(graph.passes[pass]);
   if (reads(read, changed & ~Reads::partOfCamera)) return true;
   if (!reads(read, Reads::partOfCamera) || !reads(changed, Reads::camera)) return false;
   const auto before = lastOfCamera.find(pass);

@@ -168,7 +168,7 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
   for (std::size_t position = 0; position < plan.order.size(); ++position) {
     const std::size_t index = static_cast<std::size_t>(plan.order[position]);
     PassPlan& pass = plan.passes[index];
-    pass.dependsOn = readsOf(*graph.passes[index].object);
+    pass.dependsOn = readsOf(graph.passes[index]);
     if (!request.accumulate) pass.dependsOn = pass.dependsOn & ~Reads::history;
     for (const OutputIndex source : sourcesRead(graph.passes[index], request)) {
       if (!plan.output(source).wanted) continue;
@@ -203,10 +203,11 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
 
 }  // namespace
 
-Reads readsOf(const Pass& pass) {
-  Reads result = pass.readsFrom();
-  for (const InBase* input : pass.inputs())
-    if (input->presence() == Presence::history) result = result | Reads::history;
+Reads readsOf(const BoundPass& pass) {
+  Reads result = pass.object->readsFrom();
+  for (std::size_t i = 0; i < pass.sources.size(); ++i)
+    if (pass.sources[i].valid() && pass.object->inputs()[i]->presence() == Presence::history)
+      result = result | Reads::history;
   return result;
 }
 

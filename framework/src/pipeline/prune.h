@@ -50,8 +50,9 @@ struct PrunePlan {
 
 PrunePlan prune(const BoundGraph& graph, const PruneRequest& request);
 
-/// What a pass reads besides its inputs: its declared reads, and Reads::history if it has a history input.
-Reads readsOf(const Pass& pass);
+/// What a pass reads besides its inputs: its declared reads, and Reads::history if a history input is
+/// connected.
+Reads readsOf(const BoundPass& pass);
 /// Outputs of this frame that a pass reads: its connected inputs but for those that the scene or the
 /// parameters make useless.
 std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request);

@@ -1,6 +1,6 @@
 #version 450
-// One more bounce: cones gather light for every fragment from the store of the previous bounces; it is reflected diffusely and added to the
-// direct light (Crassin et al. 2011 inject direct light only). Like inject.comp, it counts the fragments of each voxel.
+// One more bounce: cones gather light at the listed fragments from the store of the previous bounces; it is reflected diffusely (Crassin et
+// al. 2011 inject direct light only). Like inject.comp, it counts the fragments of each voxel.
 //
 // DIRECTIONS: both sides gather separately. Otherwise a voxel emits equally to all sides, and the side that reflects more counts.
 #pragma lumivox axis DIRECTIONS 0 1
@@ -23,8 +23,8 @@ layout(std140, binding = 0) uniform Parameters {
   int twoSided;        // 1: light on the back side counts as well
   int glossy;          // 1: Phong lobes reflect to all sides like diffuse light
 };
-layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // r, g, b per fragment or per side of a fragment, W/(sr m^2)
-layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };
+layout(std430, binding = 2) readonly buffer ListedFragments { uint listedFragments[]; };
+layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };  // r, g, b per fragment or per side of a fragment, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #include "../sums.glsl"
 #if DIRECTIONS
@@ -47,8 +47,8 @@ vec3 arrivingFrom(vec3 posWorld, vec3 normal, vec2 place) {
 float total(vec3 value) { return value.r + value.g + value.b; }
 
 void main() {
-  uint index;
-  if (!takenFragment(index)) return;
+  if (listIndex() >= fragmentCount) return;
+  uint index = listedFragments[listIndex()];
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
@@ -70,7 +70,7 @@ void main() {
   for (uint side = 0u; side < kSides; ++side) {
     uint first = 3u * (kSides * index + side);
     for (int channel = 0; channel < 3; ++channel) {
-      float radiance = min(direct[first + uint(channel)] + sides[side][channel], mostRadiance);
+      float radiance = min(sides[side][channel], mostRadiance);
       radiances[first + uint(channel)] = radiance;
       brightest = max(brightest, radiance);
     }

@@ -7,16 +7,16 @@
 // radiance is the light that it scatters, equal in all directions: a voxel has one radiance for all directions.
 //
 // DIRECTIONS: the same for each of the six faces of a voxel.
+// REFLECTED: light of bounces is added to the direct light of the sums.
 // CHANGED: the listed bricks hold values of an earlier frame, so that voxels that have become empty are cleared.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox axis CHANGED 0 1
-#pragma lumivox require (!LIGHTS || MEDIUM != none) && (!CHANGED || MEDIUM == none)
+#pragma lumivox require (!LIGHTS || MEDIUM != none) && (!CHANGED || (MEDIUM == none && !REFLECTED))
 
 #include "common/voxel.glsl"
-#include "../bricks.glsl"
-#include "common/integer_mean.glsl"
+#include "../resolved.glsl"
 #if MEDIUM != MEDIUM_NONE
 #if LIGHTS
 #define SHADOW_VIEWS
@@ -52,7 +52,7 @@ layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections di
 void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
   vec4 faces[6];
   for (int face = 0; face < 6; ++face) {
-    faces[face] = occupied ? faceOf(place, face, coverageSum != 0, unit) : vec4(0.0);
+    faces[face] = occupied ? withReflected(faceOf(place, face, coverageSum != 0, unit), 6u * place + uint(face), unit) : vec4(0.0);
     faces[face] += (1.0 - faces[face].a) * media;
   }
   storeFaces(voxel, faces);
@@ -61,19 +61,8 @@ void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of any float format
 
-vec4 surfacesIn(VoxelSums sum) {
-  vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
-  if (coverageSum != 0) {
-    // The sums hold means over the fragments; radiance over opacity does not change.
-    float opacity = min(value.a * float(sum.fragments), 1.0);
-    value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
-  }
-  float scale = uintBitsToFloat(sum.brightest) / unit;
-  return vec4(value.rgb * scale, min(value.a, 1.0));
-}
-
 void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
-  vec4 value = occupied ? surfacesIn(sums[place]) : vec4(0.0);
+  vec4 value = occupied ? withReflected(surfacesOf(sums[place], coverageSum != 0, unit), place, unit) : vec4(0.0);
   imageStore(radianceImage, voxel, value.a < 1.0 ? value + (1.0 - value.a) * media : value);
 }
 #endif

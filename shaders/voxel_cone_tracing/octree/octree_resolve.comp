@@ -3,11 +3,12 @@
 //
 // CHANGED: bricks that have not changed since static geometry was lit are copied from the static octree, one thread per brick.
 // DIRECTIONS: the six faces of each voxel.
+// REFLECTED: light of bounces is added to the direct light of the sums.
 #pragma lumivox axis CHANGED 0 1
 #pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require !(CHANGED && REFLECTED)
 layout(local_size_x = 64) in;
-#include "../bricks.glsl"
-#include "common/integer_mean.glsl"
+#include "../resolved.glsl"
 #include "octree_levels.glsl"
 #if CHANGED
 #include "toolkit/changed_cells.glsl"
@@ -25,22 +26,16 @@ layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections di
 #include "../face_sums.glsl"
 const uint kFaces = kBrickFaces;
 
-vec4 leafVoxel(uint place, uint face) { return faceOf(place, int(face), coverageSum != 0, unit); }
+vec4 leafVoxel(uint place, uint face) {
+  return withReflected(faceOf(place, int(face), coverageSum != 0, unit), kFaces * place + face, unit);
+}
 #else
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
 const uint kFaces = 1u;
 
-vec4 surfacesIn(VoxelSums sum) {
-  vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
-  if (coverageSum != 0) {
-    // The sums hold means over the fragments; radiance over opacity does not change.
-    float opacity = min(value.a * float(sum.fragments), 1.0);
-    value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
-  }
-  return vec4(value.rgb * (uintBitsToFloat(sum.brightest) / unit), min(value.a, 1.0));
+vec4 leafVoxel(uint place, uint face) {
+  return withReflected(surfacesOf(sums[place], coverageSum != 0, unit), place, unit);
 }
-
-vec4 leafVoxel(uint place, uint face) { return surfacesIn(sums[place]); }
 #endif
 
 void main() {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "../cones/bounces.h"
 #include "../cones/march.h"
 #include "../direct_light.h"
 #include "../octree/octree.h"
@@ -24,24 +25,6 @@ namespace lumivox::voxel_cone_tracing {
 namespace {
 
 using namespace shaders::voxel_cone_tracing;
-
-/// Bounces beyond the first, from light that cones gather for every fragment; members of a pass.
-class Bounces {
- public:
-  explicit Bounces(Pass* pass)
-      : count_(
-            pass, "bounces", 1, within(1, kMost),
-            "number of reflections of the light in the voxels; 1: as published; for each further one, cones gather light at every fragment from the grid of the previous one"),
-        cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
-  int count() const { return count_; }
-  /// The most reflections of light that a store can hold; `before`: it adds those of all frames before.
-  int most(bool before) const { return before ? kMost : count_; }
-  int cones() const { return cones_; }
-
- private:
-  static constexpr int kMost = 256;
-  Param<int> count_, cones_;
-};
 
 /// The store that the frame before ended with; a member of a pass. Its light is reflected once more and added
 /// to the direct light, so that frame n of a run holds n + 1 reflections and a still scene comes to all of
@@ -74,6 +57,7 @@ class Injection {
             "voxels store media beside surfaces and scatter light isotropically, so that one set of cones sees both, and 'gather' needs no 'media' (thesis Sec. 4.5)"),
         precision_(pass, "precision", Precision::float_,
                    "numbers in the grid; float: 16 bytes a voxel; half: 8") {}
+  const DirectLight& light() const { return light_; }
 
   /// Makes so many grids whose finest level is that of the fragments, evenly halved. Where they do not fit,
   /// none is made, and the Error says what would fit.
@@ -108,76 +92,78 @@ class Injection {
   /// Fills the finest levels, one texture for all sides or six for the faces, and their properties in the
   /// port. `kept`: that of the same textures, or null. `before`: the light of the frame before, or null.
   template <class Grid>
-  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
-            const Bounces& bounces, const Grid* before, KeptGrid* kept, const FaceRule& faces = {}) {
+  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures, Bounces& bounces,
+            const Grid* before, KeptGrid* kept, const FaceRule& faces = {}) {
     result.grid = placement();
     result.holdsMedia = storesMedia();
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.most(before != nullptr));
 
-    OccupiedBricks occupied;
     const bool onlyChanges = kept != nullptr && kept->bricks != nullptr;
     ChangedCells changed;
-    VoxelSums sums;
-    if (onlyChanges) {
-      changed = changes_.since(frame, *fragments_, light_.shadow, kept->moment);
-      sums = claimChanged(frame, *fragments_, result.grid.resolution, textures.size() > 1, changed,
-                          kept->bricks, occupied, kept->changed.bricks);
-    } else {
-      sums = claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
-    }
-    sums.faces = faces;
-    // Media lie beside the surfaces' bricks.
-    if (!result.holdsMedia) result.occupied = occupied;
-    const gpu::BufferRef direct = before != nullptr ? directLight(frame, sums, brightest)
-                                                    : average(frame, *fragments_, sums, brightest);
-    const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : occupied;
-    const auto reflectLightOf = [&](const Grid& store) {
-      if constexpr (std::is_same_v<Grid, RadianceGrid>) {
-        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(store));
-      } else {
-        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(store, true));
-      }
+    if (onlyChanges) changed = changes_.since(frame, *fragments_, light_.shadow, kept->moment);
+    const auto claim = [&] {
+      LitVoxels voxels;
+      voxels.sums =
+          onlyChanges
+              ? claimChanged(frame, *fragments_, result.grid.resolution, textures.size() > 1, changed,
+                             kept->bricks, voxels.occupied, kept->changed.bricks)
+              : claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, voxels.occupied);
+      voxels.sums.faces = faces;
+      return voxels;
     };
-    // All light of the frame before is reflected once: the sums are the direct light and every bounce of it.
-    if (before != nullptr) reflectLightOf(*before);
-    resolve(frame, sums, brightest, result.unit, result.holdsMedia, bricks, textures);
+    const LitVoxels lit = litVoxels(frame, brightest, before != nullptr, nullptr, claim);
+    // Media lie beside the surfaces' bricks.
+    if (!result.holdsMedia) result.occupied = lit.occupied;
+    const auto resolveWith = [&](const gpu::BufferRef& reflected, const OccupiedBricks& bricks) {
+      resolve(frame, lit.sums, reflected, brightest, result.unit, result.holdsMedia, bricks, textures);
+    };
+    const ReflectingVoxels voxels{*fragments_, lit.sums, &lit.occupied};
+    const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : lit.occupied;
+    // All light of the frame before is reflected once: then there are the direct light and every bounce of
+    // it.
+    resolveWith(before == nullptr ? nullptr
+                                  : bounces.ofStoreBefore(frame, voxels, storeWithLayers(*before), brightest),
+                bricks);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
         fillLevels(frame, result, Opacity::facing);
       } else {
         fillLevels(frame, result);
       }
-      reflectLightOf(result);
-      resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
+      resolveWith(bounces.ofStore(frame, voxels, storeWithLayers(result), brightest), bricks);
     }
     result.filledLevels = 1;
     if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.most(before != nullptr);
     if (kept == nullptr) return;
     if (!onlyChanges) kept->moment = changes_.momentOfAll(frame, *fragments_);
-    kept->bricks = sums.bricks;
+    kept->bricks = lit.sums.bricks;
     ++kept->changed.number;
     result.changed = kept->changed;
   }
 
   /// Makes the bricks of result.tree, and fills those of the leaves.
-  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces,
-            const RadianceOctree* before) {
+  void fill(PassContext& frame, RadianceOctree& result, Bounces& bounces, const RadianceOctree* before) {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
+    const bool reflects = bounces.count() > 1 || before != nullptr;
     const float brightest = brightestOf(frame, result.unit, bounces.most(before != nullptr));
     // Every bounce changes all of the light.
-    if (bounces.count() == 1 && before == nullptr) result.still = stillIn(frame, result);
-    const VoxelSums sums = leafSums(frame, result);
-    const gpu::BufferRef direct = before != nullptr ? directLight(frame, sums, brightest)
-                                                    : average(frame, *fragments_, sums, brightest);
-    if (before != nullptr) reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(*before, true));
-    resolveLeaves(frame, result, sums, addsUp());
+    if (!reflects) result.still = stillIn(frame, result);
+    makePool(frame, result, format(), bytesOfSums(result.faces > 1, reflects));
+    const LitVoxels lit = litVoxels(frame, brightest, before != nullptr, result.tree.ranks, [&] {
+      return LitVoxels{leafSums(frame, result), {}};
+    });
+    const ReflectingVoxels voxels{.fragments = *fragments_, .sums = lit.sums, .tree = &result.tree};
+    resolveLeaves(frame, result, lit.sums, addsUp(),
+                  before == nullptr
+                      ? nullptr
+                      : bounces.ofStoreBefore(frame, voxels, storeWithLayers(*before), brightest));
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       fillLevels(frame, result);
-      reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
-      resolveLeaves(frame, result, sums, addsUp());
+      resolveLeaves(frame, result, lit.sums, addsUp(),
+                    bounces.ofStore(frame, voxels, storeWithLayers(result), brightest));
     }
     result.filledLevels = 1;
   }
@@ -219,6 +205,7 @@ class Injection {
       lit.tree = *octree.tree.still;
       lit.faces = octree.faces;
       const float brightest = brightestOf(frame, lit.unit);
+      makePool(frame, lit, format(), bytesOfSums(lit.faces > 1, false));
       const VoxelSums sums = leafSums(frame, lit);
       average(frame, staticOf(*fragments_), sums, brightest);
       resolveLeaves(frame, lit, sums, addsUp());
@@ -230,12 +217,19 @@ class Injection {
     return still.octree;
   }
 
-  VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {
+  static const shader::StorageSlot& sumsSlot(bool directional) {
+    return directional ? add::directionalSums : add::sums;
+  }
+  /// Bytes that fill a voxel: its sums and, where it reflects light of the frame before, those of that light.
+  static std::uint64_t bytesOfSums(bool directional, bool reflects) {
+    const std::uint64_t sums = sumsSlot(directional).elementBytes;
+    return reflects ? 2 * (sums + Bounces::bytesOfVoxel(directional)) : sums;
+  }
+  static VoxelSums leafSums(PassContext& frame, const RadianceOctree& result) {
     VoxelSums sums;
     sums.kind = inject::Variant::placesOctree;
     sums.directional = result.faces > 1;
-    sums.voxels = sums.directional ? makePool(frame, result, format(), add::directionalSums)
-                                   : makePool(frame, result, format(), add::sums);
+    sums.voxels = frame.emptyElements(sumsSlot(sums.directional), 8 * result.tree.leafRoom, "sums of voxels");
     sums.places = OctreeBinding(result.tree, result.poolShift);
     if (result.still == nullptr) return sums;
     sums.changed = &result.changed;
@@ -262,77 +256,60 @@ class Injection {
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
-  /// Fills the sums of occupied voxels; returns the direct light that fragments reflect.
-  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums,
-                         float brightest) {
+  /// Fills the sums of occupied voxels.
+  void average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums, float brightest) {
     const gpu::BufferRef radiances = radiancesOf(frame, list, sums);
     light_.reflect(frame, list, sums, brightest, radiances);
     addUp(frame, list, sums, radiances);
-    return radiances;
   }
 
-  struct DirectKey {
-    gpu::BufferRef fragments, count, lights;
+  /// Voxels with the sums of the direct light that they reflect; of a grid also which they are.
+  struct LitVoxels {
+    VoxelSums sums;
+    OccupiedBricks occupied;
+  };
+  struct LitKey {
+    gpu::BufferRef fragments, count, reflected, places, lights;
     gpu::TextureRef depth;
     float brightest;
-    bool operator==(const DirectKey&) const = default;
+    bool operator==(const LitKey&) const = default;
   };
-  /// The direct light that fragments reflect, without sums; kept while they and the lights' views are the
-  /// same. A list with moving fragments stays the same buffer while they move.
-  gpu::BufferRef directLight(PassContext& frame, const VoxelSums& sums, float brightest) const {
+  /// Adds up the direct light in the places that claim() makes. `stays`: kept while the fragments, their
+  /// places and the lights' views are the same. A list with moving fragments stays the same buffer while they
+  /// move.
+  template <class Claim>
+  LitVoxels litVoxels(PassContext& frame, float brightest, bool stays, const gpu::BufferRef& places,
+                      Claim&& claim) {
     const auto lit = [&] {
-      const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
-      light_.reflect(frame, *fragments_, sums, brightest, radiances);
-      return radiances;
+      LitVoxels result = claim();
+      average(frame, *fragments_, result.sums, brightest);
+      return result;
     };
-    if (fragments_->still != nullptr || light_.media.present()) return lit();
+    if (!stays || fragments_->still != nullptr || light_.media.present()) return lit();
     const ShadowMap shadow = light_.shadow.present() ? *light_.shadow : ShadowMap{};
-    const DirectKey key{fragments_->fragments, fragments_->count, shadow.lights, shadow.depth, brightest};
-    return frame.kept("direct light of fragments", key, lit);
+    const LitKey key{fragments_->fragments, fragments_->count, fragments_->reflected, places, shadow.lights,
+                     shadow.depth,          brightest};
+    return frame.kept("direct light of voxels", key, lit);
   }
 
-  /// Sums what fragments reflect of direct light and of the light that cones gather in the store.
-  void reflect(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& direct, float mostRadiance,
-               int cones, const StoreBinding& store) {
-    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
-    sums.voxels->clear(0u);
-    const MediaBinding bound(frame, light_.media, !store.holdsMedia);
-    const bounce::Variant variant{.directions = sums.directional,
-                                  .store = store.axis,
-                                  .faces = store.faces,
-                                  .environment = frame.traits().environment,
-                                  .medium = bound.axis,
-                                  .places = sums.kind};
-    // In a closed room cones lose nothing if they see partly covered finest voxels and, with six faces, the
-    // voxel in which they begin. With one value for all sides the voxel in which they begin is the surface
-    // itself.
-    const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
-    forEachFragment(frame,
-                    frame.program(variant, bounce::Constants{.environmentMap = environmentMapOf(frame)}),
-                    {EnvironmentBinding(frame),
-                     bounce::parameters({.gridLow = fragments_->grid.low,
-                                         .voxelSize = fragments_->grid.voxelSize,
-                                         .brickCount = sums.brickCount,
-                                         .coneCount = cones,
-                                         .mostRadiance = mostRadiance,
-                                         .twoSided = light_.twoSided,
-                                         .glossy = light_.glossy(frame)}),
-                     bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
-                     march.binding(frame, store), bound},
-                    *fragments_);
-    addUp(frame, *fragments_, sums, radiances);
+  static StoreBinding storeWithLayers(const RadianceGrid& store) { return storeOf(store); }
+  template <class Store>
+  static StoreBinding storeWithLayers(const Store& store) {
+    return storeOf(store, true);
   }
 
-  /// Resolves the sums into the finest levels: of these bricks only, or of all voxels where media lie in
-  /// them.
-  void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
-               const OccupiedBricks& bricks, std::span<const gpu::TextureRef> textures) {
+  /// Resolves the sums, and what the voxels reflect beside it unless that is null, into the finest levels: of
+  /// these bricks only, or of all voxels where media lie in them.
+  void resolve(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& reflected, float mostRadiance,
+               float unit, bool holdsMedia, const OccupiedBricks& bricks,
+               std::span<const gpu::TextureRef> textures) {
     const LightBinding lights(light_.shadow);
     const MediaBinding bound(frame, light_.media, holdsMedia);
     const auto& program = frame.program(resolve::Variant{.directions = sums.directional,
                                                          .lights = holdsMedia && light_.shadow.present(),
                                                          .medium = bound.axis,
-                                                         .changed = sums.changed != nullptr});
+                                                         .changed = sums.changed != nullptr,
+                                                         .reflected = reflected != nullptr});
     const GridPlacement grid = placement();
     shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
                                                      .unit = unit,
@@ -345,6 +322,7 @@ class Injection {
                                                      .mostRadiance = mostRadiance}),
                                 resolve::brickList(bricks.bricks),
                                 resolve::brickCount(bricks.count),
+                                resolve::reflected(reflected),
                                 sums.bindings(),
                                 lights,
                                 bound};
@@ -368,7 +346,7 @@ class Injection {
 
 class InjectPass : public Pass {
   Injection injection{this};
-  Bounces bounces{this};
+  Bounces bounces{this, injection.light()};
   LightBefore<RadianceGrid> before{this};
   Param<bool> mips{
       this, "mips", true,
@@ -378,6 +356,7 @@ class InjectPass : public Pass {
 
   Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
+  std::string checkParameters() const override { return bounces.check(); }
 
   void run(PassContext& frame) override {
     if (bounces.count() > 1 && !mips)
@@ -396,7 +375,7 @@ class InjectDirectionalPass : public Pass {
   enum class OpaqueAlong { facing, all };
 
   Injection injection{this};
-  Bounces bounces{this};
+  Bounces bounces{this, injection.light()};
   LightBefore<DirectionalRadianceGrid> before{this};
   Param<float> backWeight{
       this, "back_weight", FaceRule{}.backWeight, within(0.0f, 1.0f),
@@ -410,6 +389,7 @@ class InjectDirectionalPass : public Pass {
 
   Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
+  std::string checkParameters() const override { return bounces.check(); }
 
   void run(PassContext& frame) override {
     const auto rooms = [&] { return injection.rooms(frame, 6, "radiance grid of one side", true); };
@@ -424,7 +404,7 @@ class InjectDirectionalPass : public Pass {
 
 class OctreeInjectPass : public Pass {
   Injection injection{this};
-  Bounces bounces{this};
+  Bounces bounces{this, injection.light()};
   LightBefore<RadianceOctree> before{this};
   enum class Faces { one, six };
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
@@ -436,6 +416,7 @@ class OctreeInjectPass : public Pass {
 
   Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
+  std::string checkParameters() const override { return bounces.check(); }
 
   void run(PassContext& frame) override {
     RadianceOctree result;

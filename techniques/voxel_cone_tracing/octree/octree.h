@@ -30,16 +30,17 @@ struct VoxelBytes {
 /// largest one that fits. `holdsTree`: its nodes and tags already exist.
 void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& voxel, bool holdsTree);
 
-/// Makes the pool for the bricks of result.tree with result.faces each, and returns the sums for each voxel
-/// of the leaves.
-gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
-                        const shader::StorageSlot& sums);
+/// Makes the pool for the bricks of result.tree with result.faces each. `bytesOfSums`: what fills a voxel of
+/// the leaves beside it, for which there must be room too.
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format, std::uint64_t bytesOfSums);
 
 /// Fills all levels above the leaves of an octree, composited along the axis that they face. Unchanged parts
 /// are copied from `still`.
 void fillLevels(PassContext& frame, RadianceOctree& octree);
 
 /// Fills the bricks of the leaves from the sums of their voxels. `coverageSum`: coverages add up.
-void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums, bool coverageSum);
+/// `reflected`: what voxels reflect beside the light of the sums (Bounces); null: nothing.
+void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums, bool coverageSum,
+                   const gpu::BufferRef& reflected = nullptr);
 
 }  // namespace lumivox::voxel_cone_tracing

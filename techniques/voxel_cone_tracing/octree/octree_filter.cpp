@@ -27,24 +27,24 @@ gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, gpu::Format forma
 
 }  // namespace
 
-gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
-                        const shader::StorageSlot& sums) {
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format, std::uint64_t bytesOfSums) {
   const VoxelOctree& tree = result.tree;
   const auto faces = static_cast<std::uint64_t>(result.faces);
-  requireRoom(frame, tree, {.texels = faces * gpu::bytesPerTexel(format), .sums = sums.elementBytes}, true);
+  requireRoom(frame, tree, {.texels = faces * gpu::bytesPerTexel(format), .sums = bytesOfSums}, true);
   result.radiance = pool(frame, faces * tree.brickRoom, format, result.poolShift);
-  return frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
-void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums,
-                   bool coverageSum) {
+void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums, bool coverageSum,
+                   const gpu::BufferRef& reflected) {
   const VoxelOctree& tree = octree.tree;
-  forEachBrick(frame,
-               frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr,
-                                                     .directions = sums.directional}),
-               {octree_resolve::leaves({.unit = octree.unit, .coverageSum = coverageSum}),
-                octree_resolve::radianceImage(octree.radiance), sums.bindings()},
-               tree, tree.depth, sums.changed != nullptr ? 1 : VoxelOctree::kBrickVoxels);
+  forEachBrick(
+      frame,
+      frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr,
+                                            .directions = sums.directional,
+                                            .reflected = reflected != nullptr}),
+      {octree_resolve::leaves({.unit = octree.unit, .coverageSum = coverageSum}),
+       octree_resolve::radianceImage(octree.radiance), octree_resolve::reflected(reflected), sums.bindings()},
+      tree, tree.depth, sums.changed != nullptr ? 1 : VoxelOctree::kBrickVoxels);
 }
 
 namespace {
