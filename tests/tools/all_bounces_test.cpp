@@ -108,6 +108,8 @@ TEST_CASE("light of a lamp that goes out is gone to 1 % within log 0.01 / log al
   const std::vector<double> mean = framesOf(row.pipeline, 0.5f, out + frames + 1, out);
   CAPTURE(row.pipeline, mean[out - 1], mean[out], mean[out + frames]);
   CHECK(mean[out] > 0.2 * mean[out - 1]);  // what arrived before is reflected once more
+  // A turn of all voxels halves it at this albedo, as one reflection does.
+  CHECK(mean[out + row.turns + row.lag] < 0.505 * mean[out]);
   CHECK(mean[out + frames] < 0.01 * mean[out - 1]);
 }
 
