@@ -65,7 +65,7 @@ struct Row {
 };
 const std::vector<Row> kRows = {{"implicit_visibility_all_bounces", 0.99, 0.99},
                                 {"virtual_area_lights_all_bounces", 0.94, 0.95},
-                                {"near_field_voxels_all_bounces", 0.91, 0.97, 3, 4},
+                                {"near_field_voxels_all_bounces", 0.98, 0.98, 3, 4},
                                 {"voxel_cone_tracing_directional_all_bounces", 0.99, 0.97, 0, 8},
                                 {"imperfect_volumes_all_bounces", 0.99, 0.98}};
 
