@@ -1,5 +1,6 @@
 // Marks the voxels that a surface point reads.
 #include "neighbours.glsl"
+#include "turns.glsl"
 layout(binding = 0, r32ui) uniform writeonly uimage3D marks;
 
 // The lowest of the eight voxels from which neighbour i is filtered, or its only voxel; false if its weight is 0.
@@ -12,7 +13,7 @@ bool readBlock(int i, vec3 surface, vec3 normal, out ivec3 low) {
 
 void markBlock(ivec3 low) {
   for (int corner = 0; corner < (isFiltered() ? 8 : 1); ++corner)
-    imageStore(marks, inVolume(low + ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), uvec4(1u));
+    imageStore(marks, inVolume(low + ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), uvec4(kSeen));
 }
 
 void markReads(vec3 surface, vec3 normal) {

@@ -102,25 +102,37 @@ class Marching : public Pass {
     gpu::BufferRef count, voxels;
     std::string readFor;  ///< ShGrid::readFor
   };
+  bool beginsWhereRead() const { return cover == Cover::read && gbuffer.present(); }
   virtual void markMore(PassContext&, const shader::BindingSet& /*marks*/) {}
-  Begins begins(PassContext& frame) {
-    if (cover == Cover::all || !gbuffer.present() || frame.keepsEverything()) return {};
-    const glm::ivec3& size = grid().resolution;
-    const gpu::TextureRef marks = frame.emptyVolume(size, gpu::Format::r32ui, "voxels that are read");
-    const shader::BindingSet marking{volumeBinding(grid(), occupied), neighbours.binding(),
-                                     mark_surfaces::marks(marks)};
+  gpu::TextureRef emptyMarks(PassContext& frame) const {
+    return frame.emptyVolume(grid().resolution, gpu::Format::r32ui, "voxels that are read");
+  }
+  shader::BindingSet marking(const gpu::TextureRef& marks) const {
+    return {volumeBinding(grid(), occupied), neighbours.binding(), mark_surfaces::marks(marks)};
+  }
+  /// Marks what pixels read, over other marks.
+  void markSeen(PassContext& frame, const shader::BindingSet& marks) {
     frame.dispatch(frame.program(mark_surfaces::Variant{}, neighbours.in(mark_surfaces::Constants{})),
-                   {marking, GBufferBinding(*gbuffer)}, pixels(frame));
-    markMore(frame, marking);
+                   {marks, GBufferBinding(*gbuffer)}, pixels(frame));
+  }
+  /// Lists voxels by a program over all of them, which counts in `listCount` and writes `list`.
+  Begins listed(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound) {
     Begins result{countBuffer(frame, "count of voxels that are read"),
                   frame.elements(list_marked::list, grid().voxelCount(), "list of voxels that are read"),
                   neighbours.inWords()};
-    frame.dispatch(frame.program(list_marked::kProgram),
-                   {volumeBinding(grid(), occupied), list_marked::marks(marks),
-                    list_marked::listCount(result.count), list_marked::list(result.voxels)},
-                   size);
+    frame.dispatch(program,
+                   {bound, volumeBinding(grid(), occupied), list_marked::listCount(result.count),
+                    list_marked::list(result.voxels)},
+                   grid().resolution);
     finishCount(frame, result.count, grid().voxelCount(), kCountedGroupSize / kTogether);
     return result;
+  }
+  Begins begins(PassContext& frame) {
+    if (!beginsWhereRead() || frame.keepsEverything()) return {};
+    const gpu::TextureRef marks = emptyMarks(frame);
+    markSeen(frame, marking(marks));
+    markMore(frame, marking(marks));
+    return listed(frame, frame.program(list_marked::kProgram), {list_marked::marks(marks)});
   }
 
   march::Constants constants() const {
@@ -187,6 +199,9 @@ class MarchPass : public Marching {
       "radiance of a hit; surface: of the side that the ray sees, exact for a Lambert wall; harmonics: of two bands, 1/2 + 3/4 cos in place of 1",
       published(Source::harmonics)};
   Param<int> bounces{this, "bounces", 1, within(1, 1024), "number of reflections of the light"};
+  Param<int> turns{
+      this, "turns", 0, within(0, 64),
+      "with 'before' and 'gbuffer': rays begin in one of so many frames in a voxel that surfaces read and no pixel, and what it held is kept in the others; in all frames where a pixel reads it, and at once where it held nothing. 0: in every frame, and voxels that held nothing in the frame before count as dark"};
   Param<Feed> feed{
       this, "feed", Feed::front,
       "light that a voxel reflects at the next bounce; front: light that arrives in front of both its sides, as at a surface through its centre; own: light of its own coefficients; printed: two buffers alternate (Sec. 3.3): a voxel sends what arrives in it, by 'source harmonics' and whatever its albedo, and only the last buffer is read",
@@ -196,7 +211,9 @@ class MarchPass : public Marching {
   Out<ShGrid> carried{this, "carried", Contributes::nothing, Needs::anyLight,
                       "the same, in the voxels that surfaces read too: 'before' of the next frame"};
 
-  Reads readsFrom() const override { return Reads::environment; }
+  Reads readsFrom() const override {
+    return turns > 0 ? Reads::environment | Reads::history : Reads::environment;
+  }
   int indirectBounces() const override { return bounces; }
   bool uses(const InBase& input) const override {
     return Marching::uses(input) && (&input != &attributes || readsAttributes()) &&
@@ -224,18 +241,26 @@ class MarchPass : public Marching {
     if (readsAttributes() && !attributes.present())
       throw Error("'source surface' and further bounces read 'attributes'; expected it to be connected");
     if (readsAttributes()) requireSameGrid("attributes", attributes->grid, "reflected", sent.grid);
-    const Begins from = begins(frame);
+    const bool inTurns = takesTurns();
+    const Turns turn = inTurns ? takeTurns(frame) : Turns{begins(frame), emptyVolumes(frame, kArriving)};
+    const Begins& from = turn.from;
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;
     result.readFor = from.readFor;
-    if (const ShGrid::Level* const earlier = lightBefore(from); earlier != nullptr) {
+    const ShGrid::Level* const earlier = lightBefore(from.readFor);
+    if (earlier != nullptr && (!inTurns || turn.before)) {
       const auto both = emptyVolumes(frame, "direct light and light of the frame before, reflected");
-      reflectAgain(frame, *earlier, both, &sent, sentUnit);
-      result.levels.push_back({grid(), arriving(frame, {grid(), both}, 1.0f, from, 0)});
+      if (inTurns)
+        reflectFronts(frame, *earlier, turn.before, turn.surfaces, both, &sent, sentUnit);
+      else
+        reflectAgain(frame, *earlier, both, &sent, sentUnit);
+      gather(frame, {grid(), both}, 1.0f, from, 0, turn.light);
+      result.levels.push_back({grid(), turn.light});
       deliver(result);
       return;
     }
-    result.levels.push_back({grid(), arriving(frame, sent, sentUnit, from, 0)});
+    gather(frame, sent, sentUnit, from, 0, turn.light);
+    result.levels.push_back({grid(), turn.light});
     const auto& sum = result.levels.front().coefficients;
     if (feed == Feed::printed) {
       for (int bounce = 1; bounce < bounces; ++bounce)
@@ -247,7 +272,10 @@ class MarchPass : public Marching {
     std::array<gpu::TextureRef, 3> passedOn;
     for (int bounce = 1; bounce < bounces; ++bounce) {
       if (!passedOn[0]) passedOn = emptyVolumes(frame, "radiance that is reflected again");
-      reflectAgain(frame, latest, passedOn);
+      if (inTurns)
+        reflectFronts(frame, latest, turn.now, turn.surfaces, passedOn);
+      else
+        reflectAgain(frame, latest, passedOn);
       latest.coefficients = arriving(frame, {grid(), passedOn}, 1.0f, from, bounce);
       for (std::size_t i = 0; i < 3; ++i)
         frame.dispatch(frame.program(add::kProgram),
@@ -268,11 +296,64 @@ class MarchPass : public Marching {
 
   /// After a frame with n reflections one gathering gives n + 1: what arrived then is reflected with the
   /// direct light, and no bounce counts twice. Null where there is no such light in this grid.
-  const ShGrid::Level* lightBefore(const Begins& from) const {
+  const ShGrid::Level* lightBefore(const std::string& readFor) const {
     if (!before.present() || feed == Feed::printed) return nullptr;
-    const auto [level, unit] =
-        volumeOf(before, from.readFor.empty() ? std::string() : readForSurfaces(from.readFor));
+    const auto [level, unit] = volumeOf(before, readFor.empty() ? std::string() : readForSurfaces(readFor));
     return level.grid == grid() ? &before->levels.front() : nullptr;
+  }
+
+  bool takesTurns() const {
+    return turns > 0 && beginsWhereRead() && carried.wanted() && feed != Feed::printed;
+  }
+  /// Occupied voxels, of front.glsl.
+  struct Surfaces {
+    gpu::BufferRef count, list;
+  };
+  Surfaces markFronts(PassContext& frame, const shader::BindingSet& marks) const {
+    const Surfaces result{
+        countBuffer(frame, "count of surfaces"),
+        frame.elements(mark_front::surfaces, grid().voxelCount(), "surfaces and their fronts")};
+    frame.dispatch(
+        frame.program(mark_front::Variant{}, mark_front::Constants{.feedsOwn = feed != Feed::front}),
+        {marks, mark_front::opacity(opacity->opacity, gpu::Sampling::nearest),
+         mark_front::meanNormals(attributes->normal, gpu::Sampling::nearest),
+         mark_front::surfaceCount(result.count), mark_front::surfaces(result.list)},
+        grid().resolution);
+    finishCount(frame, result.count, grid().voxelCount());
+    return result;
+  }
+
+  struct Turns {
+    Begins from;
+    std::array<gpu::TextureRef, 3> light;  ///< kept where no rays begin, else 0
+    // With 'turns':
+    Surfaces surfaces{};
+    gpu::TextureRef before{};  ///< turns of the frame before; null: there is no light of it
+    gpu::TextureRef now{};
+  };
+  Turns takeTurns(PassContext& frame) {
+    const glm::ivec3& size = grid().resolution;
+    const History<gpu::TextureRef> turn = frame.history(
+        {gpu::TextureKind::d3, gpu::Format::r32ui, size.x, size.y, size.z}, "turns of the voxels");
+    turn.current->clear(glm::vec4(0.0f));
+    const gpu::TextureRef marks = emptyMarks(frame);
+    Turns result{
+        {}, emptyVolumes(frame, kArriving), markFronts(frame, marking(marks)), nullptr, turn.current};
+    markSeen(frame, marking(marks));
+    shader::BindingSet bound{take_turns::turns({static_cast<std::uint32_t>(int(turns))}),
+                             take_turns::marks(marks), take_turns::turnImage(turn.current),
+                             images(result.light)};
+    if (const ShGrid::Level* const earlier = lightBefore(neighbours.inWords());
+        earlier != nullptr && turn.previous) {
+      result.before = turn.previous;
+      bound.add(shader::BindingSet{take_turns::turnBefore(turn.previous, gpu::Sampling::nearest),
+                                   ShLevelBinding(*earlier, gpu::Sampling::nearest)});
+    }
+    result.from = listed(frame,
+                         frame.program(take_turns::Variant{.before = result.before != nullptr},
+                                       take_turns::Constants{.everywhere = frame.keepsEverything()}),
+                         bound);
+    return result;
   }
 
   std::array<gpu::TextureRef, 3> emptyVolumes(PassContext& frame, const char* label) const {
@@ -281,10 +362,17 @@ class MarchPass : public Marching {
     return volumes;
   }
 
-  /// One bounce: the light that arrives at voxels from what they send.
+  static constexpr const char* kArriving = "radiance that arrives";
+
   std::array<gpu::TextureRef, 3> arriving(PassContext& frame, const ShGrid::Level& sent, float unit,
                                           const Begins& from, int bounce) const {
-    auto volumes = emptyVolumes(frame, "radiance that arrives");
+    auto volumes = emptyVolumes(frame, kArriving);
+    gather(frame, sent, unit, from, bounce, volumes);
+    return volumes;
+  }
+  /// One bounce: the light that arrives at voxels from what they send.
+  void gather(PassContext& frame, const ShGrid::Level& sent, float unit, const Begins& from, int bounce,
+              const std::array<gpu::TextureRef, 3>& volumes) const {
     march::Constants choices = constants();
     choices.harmonics = sendsBands();
     choices.environmentMap = environmentMapOf(frame);
@@ -298,21 +386,22 @@ class MarchPass : public Marching {
              {images(volumes), EnvironmentBinding(frame), march::meanNormals(normals, gpu::Sampling::nearest),
               ShLevelBinding(sent, gpu::Sampling::nearest)},
              {.environment = sky, .reach = kNoEnd, .reflectedUnit = unit, .bounce = bounce}, from);
-    return volumes;
   }
 
+  /// Direct light that voxels reflect, for the shaders that reflect again.
+  static shader::BindingSet besides(const ShGrid::Level* direct, float unit) {
+    if (direct == nullptr) return {};
+    return {feed::beside({unit}), feed::directRed(direct->coefficients[0], gpu::Sampling::nearest),
+            feed::directGreen(direct->coefficients[1], gpu::Sampling::nearest),
+            feed::directBlue(direct->coefficients[2], gpu::Sampling::nearest)};
+  }
   /// What surfaces reflect of the light that arrives at them, and of `direct` light, if any.
   void reflectAgain(PassContext& frame, const ShGrid::Level& light,
                     const std::array<gpu::TextureRef, 3>& passedOn, const ShGrid::Level* direct = nullptr,
                     float directUnit = 1.0f) const {
-    shader::BindingSet beside;
-    if (direct != nullptr)
-      beside = {feed::beside({directUnit}), feed::directRed(direct->coefficients[0], gpu::Sampling::nearest),
-                feed::directGreen(direct->coefficients[1], gpu::Sampling::nearest),
-                feed::directBlue(direct->coefficients[2], gpu::Sampling::nearest)};
     frame.dispatch(frame.program(feed::Variant{.direct = direct != nullptr},
                                  neighbours.in(feed::Constants{.feedsOwn = feed == Feed::own})),
-                   {beside, volumeBinding(grid(), occupied), neighbours.binding(),
+                   {besides(direct, directUnit), volumeBinding(grid(), occupied), neighbours.binding(),
                     ShLevelBinding(light, gpu::Sampling::linear),
                     feed::opacityAround(opacity->opacity, gpu::Sampling::nearest),
                     feed::normalsAround(attributes->normal, gpu::Sampling::nearest),
@@ -320,6 +409,22 @@ class MarchPass : public Marching {
                     feed::meanNormals(attributes->normal, gpu::Sampling::nearest),
                     feed::albedo(attributes->albedo, gpu::Sampling::nearest), images(passedOn)},
                    grid().resolution);
+  }
+  /// The same with light in turns.
+  void reflectFronts(PassContext& frame, const ShGrid::Level& light, const gpu::TextureRef& turnsOfLight,
+                     const Surfaces& surfaces, const std::array<gpu::TextureRef, 3>& passedOn,
+                     const ShGrid::Level* direct = nullptr, float directUnit = 1.0f) const {
+    frame.dispatchIndirect(
+        frame.program(reflect_front::Variant{.direct = direct != nullptr},
+                      reflect_front::Constants{.feedsOwn = feed != Feed::front}),
+        {besides(direct, directUnit), volumeBinding(grid(), occupied),
+         reflect_front::surfaceCount(surfaces.count), reflect_front::surfaces(surfaces.list),
+         ShLevelBinding(light, gpu::Sampling::nearest),
+         reflect_front::turnsOfLight(turnsOfLight, gpu::Sampling::nearest),
+         reflect_front::opacity(opacity->opacity, gpu::Sampling::nearest),
+         reflect_front::meanNormals(attributes->normal, gpu::Sampling::nearest),
+         reflect_front::albedo(attributes->albedo, gpu::Sampling::nearest), images(passedOn)},
+        *surfaces.count, kGroupsOffset);
   }
 };
 
