@@ -1,7 +1,7 @@
 #version 450
 // Lists the voxels in which rays begin in this frame, and keeps the light of the frame before in the others. Rays begin in each voxel that
-// a pixel reads, in one of `turns` frames where only surfaces read it, and at once where it holds nothing. BEFORE: there is such light.
-// Images begin with zeros.
+// a pixel reads, in one of `turns` frames where only surfaces read it, and at once where it holds nothing. BEFORE: there is such light; if
+// not, rays begin in all voxels in so many frames from this one on. Images begin with zeros.
 #pragma lumivox axis BEFORE 0 1
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "common/voxel.glsl"
@@ -30,8 +30,10 @@ void main() {
   uint mark = imageLoad(marks, voxel).r, turn = turnOf(voxel, turns);
   bool isRead = mark == kSeen || mark == kUnseen, begins = isRead;
 #if BEFORE
-  uint before = mark == kUnseen ? texelFetch(turnBefore, voxel, 0).r : kNothing;
-  if (before >= turns) {
+  uint before = mark == kUnseen ? texelFetch(turnBefore, voxel, 0).r : kNothing, atOnce = before >> 8;
+  if (atOnce > 0u) {
+    turn |= atOnce - 1u << 8;
+  } else if (before >= turns) {
     turn = 1u;
   } else if (before != kNothing) {
     turn = before + 1u;
@@ -40,6 +42,8 @@ void main() {
     imageStore(greenImage, voxel, texelFetch(green, voxel, 0));
     imageStore(blueImage, voxel, texelFetch(blue, voxel, 0));
   }
+#else
+  turn |= turns - 1u << 8;
 #endif
   if (isRead) imageStore(turnImage, voxel, uvec4(turn));
   if (begins || everywhere != 0 && !isRead) list[atomicAdd(listed, 1u)] = packVoxel(voxel);

@@ -6,9 +6,10 @@
 const uint kUnseen = 1u;  // only surfaces read the voxel, for the next bounce
 const uint kSeen = 2u;    // a pixel reads the voxel
 
-// Turns: 0 where a voxel holds no light, else one more than the frames since its rays began. Neighbours begin at different turns: eight in a
-// row among any 2 x 2 x 2 voxels.
+// What a voxel holds: kNothing, or light. Then the low 8 bits are one more than the frames since its rays began, and the others the number
+// of frames to come in which they begin all the same.
 const uint kNothing = 0u;
+// In which of `turns` frames rays begin in a voxel: any 2 x 2 x 2 voxels begin in eight frames in a row.
 uint turnOf(ivec3 voxel, uint turns) { return 1u + uint(voxel.x + 2 * voxel.y + 4 * voxel.z) % turns; }
 
 #endif

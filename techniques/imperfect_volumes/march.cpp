@@ -201,7 +201,7 @@ class MarchPass : public Marching {
   Param<int> bounces{this, "bounces", 1, within(1, 1024), "number of reflections of the light"};
   Param<int> turns{
       this, "turns", 0, within(0, 64),
-      "with 'before' and 'gbuffer': rays begin in one of so many frames in a voxel that surfaces read and no pixel, and what it held is kept in the others; in all frames where a pixel reads it, and at once where it held nothing. 0: in every frame, and voxels that held nothing in the frame before count as dark"};
+      "with 'before' and 'gbuffer': frames in which a voxel that surfaces read, and no pixel, sends rays once, and keeps its light in the others; it sends them at once where it held nothing, and in each of the first frames, as many. Surfaces then reflect the light of the free voxel in front of each side. 0: rays begin in every frame, and surfaces read light as pixels do, with 'cover all' also where it was left out before"};
   Param<Feed> feed{
       this, "feed", Feed::front,
       "light that a voxel reflects at the next bounce; front: light that arrives in front of both its sides, as at a surface through its centre; own: light of its own coefficients; printed: two buffers alternate (Sec. 3.3): a voxel sends what arrives in it, by 'source harmonics' and whatever its albedo, and only the last buffer is read",
@@ -292,7 +292,9 @@ class MarchPass : public Marching {
   }
 
   /// Rays begin in the voxels of visible surfaces, and with 'carried' in those of all surfaces.
-  static std::string readForSurfaces(const std::string& readFor) { return readFor + " on all surfaces"; }
+  std::string readForSurfaces(const std::string& readFor) const {
+    return readFor + (takesTurns() ? " and in front of all surfaces" : " on all surfaces");
+  }
 
   /// After a frame with n reflections one gathering gives n + 1: what arrived then is reflected with the
   /// direct light, and no bounce counts twice. Null where there is no such light in this grid.
@@ -303,7 +305,7 @@ class MarchPass : public Marching {
   }
 
   bool takesTurns() const {
-    return turns > 0 && beginsWhereRead() && carried.wanted() && feed != Feed::printed;
+    return turns > 0 && beginsWhereRead() && surfacesRead() && feed != Feed::printed;
   }
   /// Occupied voxels, of front.glsl.
   struct Surfaces {

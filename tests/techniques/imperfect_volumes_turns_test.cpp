@@ -66,13 +66,18 @@ TEST_CASE(
   const std::vector<float> pixels = seenIn(once);
   Frames frames(turns);
   const std::vector<float> first = meansIn(frames.next(once));
+  for (int frame = 1; frame < turns; ++frame) {
+    const Volume& volume = frame % 2 == 0 ? twice : once;
+    INFO("all rays begin in the first frames");
+    CHECK(meansIn(frames.next(volume)) == meansIn(Frames(turns).next(volume)));
+  }
   std::vector<std::vector<float>> later;
   for (int frame = 0; frame < turns; ++frame) later.push_back(meansIn(frames.next(twice)));
   for (int frame = 0; frame < turns; ++frame) later.push_back(meansIn(frames.next(once)));
 
   std::vector<int> renewedIn(first.size(), 0);
   std::vector<int> count(turns, 0);
-  int hidden = 0;
+  int hidden = 0, wrong = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == 0.0f) {
       for (const std::vector<float>& frame : later) CHECK(frame[i] == 0.0f);
@@ -93,12 +98,13 @@ TEST_CASE(
     // Kept until the same turn of the next eight frames.
     for (int frame = 0; frame < 2 * turns; ++frame) {
       const bool holdsTwice = frame >= at && frame < at + turns;
-      if (isRenewed(frame) != holdsTwice) FAIL_CHECK("voxel " << i << ", frame " << frame << ", turn " << at);
+      wrong += isRenewed(frame) != holdsTwice ? 1 : 0;
     }
   }
   REQUIRE(hidden > 400);
+  CHECK(wrong == 0);
   for (const int part : count) CHECK(part == Approx(hidden / 8.0).epsilon(0.2));
-  int pairs = 0;
+  int pairs = 0, together = 0;
   once.forEach([&](const glm::ivec3& low) {
     std::set<int> found;
     int read = 0;
@@ -111,9 +117,10 @@ TEST_CASE(
       found.insert(renewedIn[i]);
     }
     pairs += read > 1 ? 1 : 0;
-    if (static_cast<int>(found.size()) != read) FAIL_CHECK("two voxels of a block begin in one frame");
+    together += read - static_cast<int>(found.size());
   });
   CHECK(pairs > 200);
+  CHECK(together == 0);
 }
 
 namespace {
@@ -134,9 +141,10 @@ Volume narrowed(double radiance, double albedo) {
 
 TEST_CASE("a voxel that held nothing renews its light at once when surfaces come to read it") {
   const Volume wide = closedRoom(10, 1.0, 0.0), narrow = narrowed(2.0, 0.0);
-  Frames frames(64);
+  Frames frames(8);
+  for (int frame = 1; frame < 8; ++frame) frames.next(wide);
   const std::vector<float> before = meansIn(frames.next(wide)), after = meansIn(frames.next(narrow)),
-                           anew = meansIn(Frames(64).next(narrow));
+                           anew = meansIn(Frames(8).next(narrow));
   int fresh = 0, kept = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
     CHECK((after[i] != 0.0f) == (anew[i] != 0.0f));
