@@ -190,3 +190,35 @@ TEST_CASE("even light is reflected evenly, in front of walls, edges and corners 
   });
   CHECK(seenFree > 20);
 }
+
+TEST_CASE("each side of a wall reflects the light in front of it, and none of that behind it") {
+  // Two rooms, and light of the frame before in the upper one alone.
+  Volume rooms = closedRoom(11, 0.0, 0.5);
+  const int wall = 6;
+  rooms.occupyWhere([&](const glm::ivec3& voxel) { return voxel.z == wall && !rooms.set().contains(voxel); },
+                    [](const glm::ivec3&) { return glm::dvec3(0, 0, 1); }, 0.0, 0.0, 0.5);
+  const ShGrid upper =
+      evenLight(rooms, [&](const glm::ivec3& voxel, int) { return voxel.z > wall ? 1.0 : 0.0; });
+  Frames frames(8);
+  frames.next(rooms);
+  const std::vector<float> means = meansIn(frames.before(upper).next(rooms));
+  double below = 0.0;
+  int above = 0, dark = 0;
+  rooms.forEach([&](const glm::ivec3& voxel) {
+    const double mean = means[rooms.at(voxel)] / constant(0.5).x;
+    if (rooms.set().contains(voxel) || mean == 0.0) return;
+    if (voxel.z > wall) {
+      ++above;
+      CHECK(mean == Approx(1.0).epsilon(1e-3));
+    } else {
+      below += mean;
+      ++dark;
+    }
+  });
+  REQUIRE(above > 50);
+  REQUIRE(dark > 50);
+  CAPTURE(below / dark);
+  // A wall that shone to both rooms would fill a fifth of what the lower one sees. Where it meets the others
+  // both sides of a voxel have one mean normal, and that voxel does.
+  CHECK(below / dark < 0.1);
+}
