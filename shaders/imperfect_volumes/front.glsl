@@ -30,8 +30,8 @@ bool wayToFront(ivec3 voxel, vec3 normal, int apart, out ivec3 nearest) {
   ivec3 side = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(normal, vec3(0.0))));
   float most = 0.0;
   for (int i = 1; i < 8; ++i) {
-    ivec3 way = side * ivec3(i & 1, i >> 1 & 1, i >> 2);
-    float along = dot(normal, normalize(vec3(way)));
+    ivec3 axes = ivec3(i & 1, i >> 1 & 1, i >> 2), way = side * axes;
+    float along = dot(size, vec3(axes)) * inversesqrt(float(axes.x + axes.y + axes.z));
     if (along <= most + 1e-3 || !isFree(voxel + way)) continue;  // of directions that differ by less the first one wins
     if (apart > 1 && !isFree(voxel + apart * way) || !COUNTS(voxel + apart * way)) continue;
     most = along;

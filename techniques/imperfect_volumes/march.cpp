@@ -249,7 +249,10 @@ class MarchPass : public Marching {
     result.readFor = from.readFor;
     const ShGrid::Level* const earlier = lightBefore(from.readFor);
     if (earlier != nullptr && (!inTurns || turn.before)) {
-      const auto both = emptyVolumes(frame, "direct light and light of the frame before, reflected");
+      // Rays in steps read no voxels but those that reflectFronts() fills.
+      const char* const label = "direct light and light of the frame before, reflected";
+      const auto both = inTurns && walk == Walk::steps ? coefficientVolumes(frame, grid().resolution, label)
+                                                       : emptyVolumes(frame, label);
       if (inTurns)
         reflectFronts(frame, *earlier, turn.before, turn.surfaces, both, &sent, sentUnit);
       else
