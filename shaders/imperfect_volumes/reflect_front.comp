@@ -1,6 +1,6 @@
 #version 450
-// As feed.comp, for the light that voxels hold in turns: each side of a surface reads the voxel in front of it, or one of those beside if that
-// voxel holds nothing.
+// As feed.comp, for the light that voxels hold in turns: each side of a surface reads the voxel in front of it or, if that one holds
+// nothing, one beside it.
 #pragma lumivox axis DIRECT 0 1
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
