@@ -13,7 +13,7 @@
 // SAMPLED: `opacity` also stores the covered samples of the voxel's sides, beside the sum of the coverages.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis SAMPLED 0 1
-#pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)
+#pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap && !CHANGED)
 #pragma lumivox require PLACES != clipmap || DIRECTIONS
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"

@@ -2,7 +2,6 @@
 // `brickCount`). An octree has eight sums per leaf, for the voxels of the leaf itself. The levels of a clipmap lie side by side in one
 // dense grid. Included after the local size, which is along x only.
 #pragma lumivox axis PLACES grid octree clipmap
-#pragma lumivox require !CHANGED || PLACES != clipmap
 #include "toolkit/taken_fragments.glsl"
 #if PLACES == PLACES_OCTREE
 #include "octree/octree_levels.glsl"

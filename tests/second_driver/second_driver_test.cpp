@@ -169,7 +169,7 @@ const std::map<std::string, std::vector<std::string>> kCases = {
     {"directional grids",
      {"voxel_cone_tracing_directional", "voxel_cone_tracing_directional_all_bounces",
       "voxel_cone_tracing_coarse_directional"}},
-    {"a clipmap", {"voxel_cone_tracing_clipmap"}},
+    {"a clipmap", {"voxel_cone_tracing_clipmap", "voxel_cone_tracing_clipmap_all_bounces"}},
     {"octrees", {"voxel_cone_tracing_octree", "voxel_cone_tracing_octree_photons"}},
     {"an octree of six faces",
      {"voxel_cone_tracing_octree_directional", "voxel_cone_tracing_octree_directional_all_bounces"}},

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "support/facts.h"
+#include "support/moving_room.h"
 #include "support/octree.h"
+#include "support/passes.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -180,6 +182,44 @@ TEST_CASE("a grid that has moved gathers all light anew") {
   frames.next(list, 0.1f);
   list.grid.low.x += 0.25f;
   CHECK(reflecting(frames.next(list, 0.2f), 2, 5, 0.2) == kSide * kSide);
+}
+
+TEST_CASE("octrees and a clipmap of one level hold the light of six grids in every frame, whatever moves") {
+  const Scene scene = movingRoom(lamp);
+  const auto run = [&](const std::string& name, const std::vector<std::string>& settings) {
+    const Pipeline text = pipeline(name);
+    RenderOptions options = sized(16, 16);
+    options.accumulate = true;
+    options.parameters = text.settings(settings);
+    PipelineExecutor executor(device(), techniques(), scene, text, options);
+    std::vector<ImageBuffer> frames;
+    for (int frame = 0; frame < 10; ++frame)
+      frames.push_back(executor.render(0.3 * frame, frame).outputs.at("indirect_diffuse"));
+    return frames;
+  };
+  const auto grids = run("voxel_cone_tracing_directional_all_bounces", {"resolution=24"}),
+             octrees = run("voxel_cone_tracing_octree_directional_all_bounces", {"resolution=24"}),
+             clipmaps = run("voxel_cone_tracing_clipmap_all_bounces", {"resolution=24", "levels=1"});
+  for (std::size_t frame = 0; frame < grids.size(); ++frame) {
+    const double mean = meanOf(grids[frame]);
+    CAPTURE(frame, mean);
+    CHECK(rmsBetween(octrees[frame], grids[frame]) < 0.02 * mean);
+    CHECK(rmsBetween(clipmaps[frame], grids[frame]) < 0.02 * mean);
+  }
+  CHECK(meanOf(grids.back()) > 1.2 * meanOf(grids.front()));
+}
+
+TEST_CASE("a clipmap whose voxels cover more than their fragments is refused bounces") {
+  const Scene scene = movingRoom(lamp);
+  const Pipeline text = pipelineWith("voxel_cone_tracing_clipmap_all_bounces",
+                                     {{"voxel_cone_tracing.clipmap", "coverage samples"}});
+  RenderOptions options = sized(8, 8);
+  options.accumulate = true;
+  options.parameters = text.settings({"resolution=8"});
+  PipelineExecutor executor(device(), techniques(), scene, text, options);
+  executor.render(0.0, 0);
+  CHECK_THROWS_MATCHES(executor.render(0.1, 1), Error,
+                       Tells("coverage samples", "before", "coverage touched"));
 }
 
 TEST_CASE("numbers of turns that places do not divide into are refused") {

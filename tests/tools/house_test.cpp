@@ -116,7 +116,7 @@ const std::map<std::string, int> kWidelyIncluding{
     {"shaders/voxel_cone_tracing/add.comp", 11},
     {"shaders/voxel_cone_tracing/clipmap/clipmap_filter.comp", 11},
     {"shaders/voxel_path_tracing/trace.comp", 12},
-    {"shaders/voxel_cone_tracing/cones/bounce.comp", 29},
+    {"shaders/voxel_cone_tracing/cones/bounce.comp", 30},
     {"shaders/voxel_cone_tracing/cones/gather.comp", 20},
     {"shaders/voxel_cone_tracing/views/lens.comp", 19},
     {"shaders/voxel_cone_tracing/cones/soft_shadows.comp", 22},
@@ -124,6 +124,7 @@ const std::map<std::string, int> kWidelyIncluding{
     {"shaders/voxel_cone_tracing/dense/lobe_sums.comp", 12},
     {"shaders/voxel_cone_tracing/octree/octree_filter.comp", 12},
     {"shaders/voxel_cone_tracing/dense/resolve.comp", 11},
+    {"shaders/voxel_cone_tracing/clipmap/clipmap_resolve.comp", 11},
     {"shaders/voxel_cone_tracing/octree/octree_resolve.comp", 12},
     {"shaders/voxelization/points.comp", 11}};
 

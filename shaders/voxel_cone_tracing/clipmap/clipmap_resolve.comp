@@ -2,13 +2,15 @@
 // Writes the voxels of a clipmap from the integer sums, as resolve.comp does for a dense grid.
 //
 // SAMPLED: opacity from the samples of a voxel's sides.
+// REFLECTED: light of bounces is added to the direct light of the sums.
 #pragma lumivox axis SAMPLED 0 1
+#pragma lumivox require !(SAMPLED && REFLECTED)
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 #include "common/voxel.glsl"
 #include "clipmap_write.glsl"
 #include "clipmap_stack.glsl"
-#include "../bricks.glsl"
+#include "../resolved.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 brickCount;
@@ -31,7 +33,7 @@ void main() {
 #if SAMPLED
   for (int face = 0; face < 6; ++face) faces[face] = faceOfSamples(place, face, unit);
 #else
-  for (int face = 0; face < 6; ++face) faces[face] = faceOf(place, face, false, unit);
+  for (int face = 0; face < 6; ++face) faces[face] = withReflected(faceOf(place, face, false, unit), 6u * place + uint(face), unit);
 #endif
   int level = levelInStack(voxel);
   writeVoxel(ownPlace(level, voxelOfLevel(voxel, level)), faces, true);

@@ -4,9 +4,8 @@
 //
 // DIRECTIONS: both sides gather separately. Otherwise a voxel emits equally to all sides, and the side that reflects more counts.
 #pragma lumivox axis DIRECTIONS 0 1
-#pragma lumivox require (STORE == directional || FACES == six) == (DIRECTIONS == 1)
-#pragma lumivox require STORE != clipmap
-#pragma lumivox require !CHANGED && PLACES != clipmap && (PLACES == octree) == (STORE == octree)
+#pragma lumivox require (STORE == directional || STORE == clipmap || FACES == six) == (DIRECTIONS == 1)
+#pragma lumivox require !CHANGED && (PLACES == octree) == (STORE == octree) && (PLACES == clipmap) == (STORE == clipmap)
 layout(local_size_x = 64) in;
 #include "store.glsl"
 #include "common/cone_march.glsl"
@@ -33,9 +32,20 @@ layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 #endif
 
+// The low corner of a voxel, and its size, m.
+#if PLACES == PLACES_CLIPMAP
+#include "../clipmap/clipmap_stack.glsl"
+vec4 placeOfVoxel(ivec3 voxel) {
+  int level = levelInStack(voxel);
+  return vec4(stackOrigin + vec3(voxelOfLevel(voxel, level)) * voxelSizeOf(level), voxelSizeOf(level));
+}
+#else
+vec4 placeOfVoxel(ivec3 voxel) { return vec4(gridLow + vec3(voxel) * voxelSize, voxelSize); }
+#endif
+
 // Cosine-weighted mean of the arriving radiance. `place` shifts the cones; it depends only on the fragment.
-vec3 arrivingFrom(vec3 posWorld, vec3 normal, vec2 place) {
-  vec3 apex = posWorld + normal * (offset * voxelSize), tangent = tangentTo(normal), bitangent = cross(normal, tangent), sum = vec3(0.0);
+vec3 arrivingFrom(vec3 posWorld, vec3 normal, float size, vec2 place) {
+  vec3 apex = posWorld + normal * (offset * size), tangent = tangentTo(normal), bitangent = cross(normal, tangent), sum = vec3(0.0);
   for (int i = 0; i < coneCount; ++i) {
     float cosTheta, tanHalfAngle;
     vec3 direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cosTheta, tanHalfAngle);
@@ -51,7 +61,8 @@ void main() {
   uint index = listedFragments[listIndex()];
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
-  vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
+  vec4 lowSize = placeOfVoxel(voxel);
+  vec3 posWorld = lowSize.xyz + unpackOffset(fragment.offset) * lowSize.w, normal = unpackNormal(fragment.normal);
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
   vec4 lobe = glossy != 0 ? lobeOf(fragment) : vec4(0.0);
   if (any(greaterThan(lobe.rgb, vec3(0.0)))) albedo += lobe.rgb * phongAlbedo(lobe.w);
@@ -59,7 +70,7 @@ void main() {
   vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));  // front, back
   // One call for both sides: the march is inlined at every call.
   for (int side = 0; side <= min(twoSided, 1); ++side)
-    sides[side] = albedo * arrivingFrom(posWorld, side == 0 ? normal : -normal, place);
+    sides[side] = albedo * arrivingFrom(posWorld, side == 0 ? normal : -normal, lowSize.w, place);
 #if DIRECTIONS
   const uint kSides = 2u;
 #else

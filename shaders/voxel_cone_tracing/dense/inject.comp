@@ -5,7 +5,7 @@
 //
 // DIRECTIONS: both sides separately, the side of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
-#pragma lumivox require PLACES != clipmap || DIRECTIONS
+#pragma lumivox require PLACES != clipmap || (DIRECTIONS && !CHANGED)
 #pragma lumivox require !REFLECTED || (!CHANGED && PLACES != clipmap)
 
 layout(local_size_x = 64) in;

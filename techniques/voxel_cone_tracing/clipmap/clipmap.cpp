@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "../cones/bounces.h"
 #include "../direct_light.h"
 #include "../voxel_sums.h"
 #include "clipmap_items.h"
@@ -18,6 +19,7 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/change_tracking.h"
 #include "lumivox/toolkit/counts.h"
+#include "lumivox/toolkit/environment.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -82,6 +84,8 @@ class ClipmapPass : public Pass {
   enum class Precision { float_, half };
 
   DirectLight light{this};
+  Bounces bounces{this, light, Bounces::Within::frames};
+  LightBefore<RadianceClipmap> previous{this};
   Param<int> resolution{this, "resolution", 64, within(8, 512), "voxels along each side of a level"};
   Param<int> levels{
       this, "levels", 3, within(1, 10),
@@ -117,6 +121,7 @@ class ClipmapPass : public Pass {
   Reads readsFrom() const override {
     return Reads::geometry | Reads::lights | Reads::materials | Reads::environment | Reads::partOfCamera;
   }
+  std::string checkParameters() const override { return bounces.check(); }
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     std::vector<float> result;
     for (const glm::ivec3& first : placeClipmap(snapshot, resolution, levels, extent).first)
@@ -127,6 +132,10 @@ class ClipmapPass : public Pass {
 
   void run(PassContext& frame) override {
     const ClipmapPlacement placement = placeClipmap(frame.snapshot(), resolution, levels, extent);
+    if (const RadianceClipmap* const lightBefore = previous.get()) {
+      radiance = withBounces(frame, placement, *lightBefore);
+      return;
+    }
     const std::shared_ptr<ClipmapState> state =
         frame.kept("voxels of all levels", ClipmapKey{placement}, [&] { return stateFor(frame, placement); });
     update(frame, *state, placement);
@@ -183,6 +192,60 @@ class ClipmapPass : public Pass {
           largest, error.what()));
     }
     return state;
+  }
+
+  // ---- all bounces over frames ---------------------------------------------------------------------------
+
+  /// What the direct light of all voxels depends on.
+  struct LitKey {
+    ClipmapPlacement placement;
+    LitBy litBy;
+    std::vector<std::shared_ptr<const void>> shadow;
+    std::vector<Bounds> moving;
+    std::uint64_t room;
+    bool operator==(const LitKey& other) const {
+      return placement.sameVoxels(other.placement) && placement.first == other.placement.first &&
+             litBy == other.litBy && shadow == other.shadow && room == other.room &&
+             std::ranges::equal(moving, other.moving, sameBounds);
+    }
+  };
+
+  /// All voxels anew: in every frame they reflect other light, so that nothing can stay where it lies.
+  RadianceClipmap withBounces(PassContext& frame, const ClipmapPlacement& placement,
+                              const RadianceClipmap& lightBefore) {
+    if (isSampled())
+      throw Error(
+          "voxel_cone_tracing.clipmap: 'coverage samples' makes voxels more opaque than their fragments cover, and that share has no light of 'before'; expected 'coverage touched'");
+    const ClipmapLayout layout = layoutOf(placement);
+    RadianceClipmap result;
+    for (gpu::TextureRef& face : result.faces) {
+      face = frame.volume(layout.volume, format(), "clipmap of one side");
+      face->clear(glm::vec4(0.0f));
+    }
+    result.occupied = frame.buffer(layout.words * sizeof(std::uint32_t), "occupied voxels of a clipmap");
+    result.occupied->clear();
+    place(frame, result, placement);
+    const glm::vec3 sky = brightestOfEnvironment(frame.sceneDescription());
+    const float brightest = static_cast<float>(bounces.most(true)) * brightestOf(frame, placement, 0) +
+                            std::max({sky.r, sky.g, sky.b});
+    if (isHalf()) result.unit = brightest / kLargestHalf;
+
+    const std::vector<LevelRange> ranges = rangesOf({}, placement, true, false);
+    tellChange(result.change, {}, placement.levels(), true, ranges);
+    const auto make = [&] { return litVoxels(frame, placement, ranges, nullptr, roomForAll_); };
+    const std::optional<std::vector<Bounds>> moving = changes_.moving(frame);
+    const LitVoxels voxels =
+        moving ? frame.kept("direct light of voxels",
+                            LitKey{placement, litBy(frame), shadowMap(), *moving, roomForAll_}, make)
+               : make();
+    resolve(frame, result, voxels,
+            bounces.ofStoreBefore(frame,
+                                  {.fragments = voxels.fragments,
+                                   .sums = voxels.sums,
+                                   .bricks = &voxels.occupied,
+                                   .firstOfLevels = placement.first},
+                                  storeOf(lightBefore, true), brightest));
+    return result;
   }
 
   // ---- what has changed ----------------------------------------------------------------------------------
@@ -265,7 +328,11 @@ class ClipmapPass : public Pass {
                           writing(state.clipmap)},
                          range.voxels.size());
     }
-    if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
+    if (!ranges.empty())
+      resolve(
+          frame, state.clipmap,
+          litVoxels(frame, placement, ranges, state.clipmap.change.cells, all ? roomForAll_ : roomForParts_),
+          nullptr);
     state.placement = placement;
     state.litBy = std::move(lit);
     state.shadow = std::move(shadow);
@@ -317,8 +384,15 @@ class ClipmapPass : public Pass {
     return {shader::UniformSlot<clipmap_voxelize::ClipmapStack>{"ClipmapStack"}(block)};
   }
 
-  void fill(PassContext& frame, const RadianceClipmap& clipmap, const ClipmapPlacement& placement,
-            const std::vector<LevelRange>& ranges, std::uint64_t& room) {
+  /// Voxels with the sums of the direct light that they reflect.
+  struct LitVoxels {
+    VoxelFragments fragments;
+    VoxelSums sums;
+    OccupiedBricks occupied;
+  };
+  LitVoxels litVoxels(PassContext& frame, const ClipmapPlacement& placement,
+                      const std::vector<LevelRange>& ranges, const gpu::BufferRef& changedCells,
+                      std::uint64_t& room) {
     const ClipmapStack stack(placement.resolution, placement.levels());
     const shader::BindingSet stackBound = stackBinding(frame, placement, stack);
     if (room == 0) {
@@ -340,23 +414,29 @@ class ClipmapPass : public Pass {
     gpu::BufferRef sideMasks;
     if (isSampled())
       sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
-    voxelize(frame, fragments, sideMasks, stackBound, ranges, clipmap.change.cells);
+    voxelize(frame, fragments, sideMasks, stackBound, ranges, changedCells);
     finishGuessed(frame, fragments.count, fragments.capacity, 0, room);
 
-    OccupiedBricks occupied;
-    VoxelSums sums = claimSums(frame, fragments, stack.size(), true, occupied);
-    sums.kind = inject::Variant::placesClipmap;
-    sums.sideMasks = sideMasks;
-    sums.places.add(stackBound);
-    const gpu::BufferRef radiances = radiancesOf(frame, fragments, sums);
-    light.reflect(frame, fragments, sums, 0.0f, radiances);
-    addUp(frame, fragments, sums, radiances);
+    LitVoxels lit{fragments, {}, {}};
+    lit.sums = claimSums(frame, fragments, stack.size(), true, lit.occupied);
+    lit.sums.kind = inject::Variant::placesClipmap;
+    lit.sums.sideMasks = sideMasks;
+    lit.sums.places.add(stackBound);
+    const gpu::BufferRef radiances = radiancesOf(frame, fragments, lit.sums);
+    light.reflect(frame, fragments, lit.sums, 0.0f, radiances);
+    addUp(frame, fragments, lit.sums, radiances);
+    return lit;
+  }
+
+  /// Writes voxels from their sums, and what they reflect beside it unless that is null.
+  void resolve(PassContext& frame, const RadianceClipmap& clipmap, const LitVoxels& lit,
+               const gpu::BufferRef& reflected) const {
     frame.dispatchIndirect(
-        frame.program(clipmap_resolve::Variant{.sampled = isSampled()}),
-        {clipmap_resolve::parameters({.brickCount = sums.brickCount, .unit = clipmap.unit}),
-         clipmap_resolve::brickList(occupied.bricks), clipmap_resolve::brickCount(occupied.count),
-         sums.bindings(), writing(clipmap)},
-        *occupied.count, OccupiedBricks::argumentsBytes(0));
+        frame.program(clipmap_resolve::Variant{.sampled = isSampled(), .reflected = reflected != nullptr}),
+        {clipmap_resolve::parameters({.brickCount = lit.sums.brickCount, .unit = clipmap.unit}),
+         clipmap_resolve::brickList(lit.occupied.bricks), clipmap_resolve::brickCount(lit.occupied.count),
+         clipmap_resolve::reflected(reflected), lit.sums.bindings(), writing(clipmap)},
+        *lit.occupied.count, OccupiedBricks::argumentsBytes(0));
   }
 
   /// Voxelizes all ranges at once, draw by draw.

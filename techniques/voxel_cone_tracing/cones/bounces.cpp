@@ -30,15 +30,16 @@ std::uint64_t reflectedBytes(const VoxelSums& sums) {
 
 }  // namespace
 
-Bounces::Bounces(Pass* pass, const DirectLight& light)
+Bounces::Bounces(Pass* pass, const DirectLight& light, Within within)
     : light_(light),
-      count_(
-          pass, "bounces", 1, within(1, kMost),
-          "number of reflections of the light in the voxels; 1: as published; for each further one, cones gather light at every fragment from the grid of the previous one"),
-      cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment"),
+      cones_(pass, "bounce_cones", 6, lumivox::within(1, 256), "cones for each side of a fragment"),
       turns_(
-          pass, "turns", kMostTurns, within(1, kMostTurns),
+          pass, "turns", kMostTurns, lumivox::within(1, kMostTurns),
           "with 'before': frames in which each voxel gathers light once, neighbours in different ones; between, it reflects what it did; 1, 2, 4 or 8") {
+  if (within == Within::frame)
+    count_.emplace(
+        pass, "bounces", 1, lumivox::within(1, kMost),
+        "number of reflections of the light in the voxels within a frame; 1: as published; for each further one, cones gather light at every fragment from the grid of the previous one");
 }
 
 std::string Bounces::check() const {
@@ -50,6 +51,7 @@ Bounces::Moment Bounces::momentOf(const ReflectingVoxels& voxels, gpu::BufferRef
   Moment moment;
   moment.reflected = std::move(reflected);
   moment.grid = voxels.fragments.grid;
+  moment.firstOfLevels = voxels.firstOfLevels;
   moment.bricks = voxels.sums.bricks;
   if (voxels.tree == nullptr) return moment;
   moment.ranks = voxels.tree->ranks;
@@ -70,7 +72,8 @@ gpu::BufferRef Bounces::ofStoreBefore(PassContext& frame, const ReflectingVoxels
       frame.history(reflectedBytes(voxels.sums), "light that voxels reflect of the frame before");
   std::erase_if(moments_, [&](const Moment& moment) { return moment.reflected != kept.previous; });
   moments_.push_back(momentOf(voxels, kept.current));
-  const bool follows = moments_.size() > 1 && moments_.front().grid == moments_.back().grid;
+  const bool follows = moments_.size() > 1 && moments_.front().grid == moments_.back().grid &&
+                       moments_.front().firstOfLevels == moments_.back().firstOfLevels;
   gather(frame, voxels, store, mostRadiance, follows ? &moments_.front() : nullptr, moments_.back());
   return kept.current;
 }

@@ -26,23 +26,6 @@ namespace {
 
 using namespace shaders::voxel_cone_tracing;
 
-/// The store that the frame before ended with; a member of a pass. Its light is reflected once more and added
-/// to the direct light, so that frame n of a run holds n + 1 reflections and a still scene comes to all of
-/// them. Without accumulation there is no such store, and nothing is added.
-template <class Store>
-class LightBefore {
- public:
-  explicit LightBefore(Pass* pass)
-      : before_(
-            pass, "before", Presence::history,
-            "light of the frame before, pre-filtered: cones gather it at every fragment, so that frames in a row come to all bounces; 'bounces' counts those within a frame",
-            Needs::nothing, Levels::all) {}
-  const Store* get() const { return before_.present() ? &*before_ : nullptr; }
-
- private:
-  In<Store> before_;
-};
-
 /// Injection into grids; members of a pass.
 class Injection {
  public:
