@@ -209,6 +209,27 @@ TEST_CASE("octrees and a clipmap of one level hold the light of six grids in eve
   CHECK(meanOf(grids.back()) > 1.2 * meanOf(grids.front()));
 }
 
+TEST_CASE(
+    "the levels of a clipmap gather all light anew where the camera has moved them, and keep it where not") {
+  const auto run = [](double speed, int turns) {
+    Scene scene = movingRoom(lamp);
+    for (Object& object : scene.objects) object.motion.reset();
+    scene.cameras.front().motion = RigidMotion{{0, 1, 0}, 0.0, {0, 0, 0}, {speed, 0, 0}};
+    const Pipeline text = pipeline("voxel_cone_tracing_clipmap_all_bounces");
+    RenderOptions options = sized(16, 16);
+    options.accumulate = true;
+    options.parameters = text.settings({"resolution=16", "levels=2", "turns=" + std::to_string(turns)});
+    PipelineExecutor executor(device(), techniques(), scene, text, options);
+    ImageBuffer last;
+    for (int frame = 0; frame < 4; ++frame)
+      last = executor.render(frame, frame).outputs.at("indirect_diffuse");
+    return last;
+  };
+  // The camera goes more than a voxel of the finest level from frame to frame, or stands.
+  CHECK(run(0.14, 8).values() == run(0.14, 1).values());
+  CHECK(run(0.0, 8).values() != run(0.0, 1).values());
+}
+
 TEST_CASE("a clipmap whose voxels cover more than their fragments is refused bounces") {
   const Scene scene = movingRoom(lamp);
   const Pipeline text = pipelineWith("voxel_cone_tracing_clipmap_all_bounces",
