@@ -13,6 +13,7 @@ void addLobes(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
 void addClipmap(TechniqueRegistry& registry);
+void addClipmapFilter(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
@@ -29,6 +30,7 @@ LUMIVOX_TECHNIQUE(registry) {
   addFilterDirectional(registry);
   addLobes(registry);
   addClipmap(registry);
+  addClipmapFilter(registry);
   addOctree(registry);
   addOctreeFilter(registry);
   addOctreeSplat(registry);

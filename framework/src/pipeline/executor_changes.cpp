@@ -49,8 +49,7 @@ void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapsho
   }
   if (stillFrames.empty()) stillFrames.assign(graph.passes.size(), -1);
   for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
-    const bool accumulates =
-        plan->passes[pass].kept && reads(readsOf(graph.passes[pass]), Reads::history);
+    const bool accumulates = plan->passes[pass].kept && reads(readsOf(graph.passes[pass]), Reads::history);
     if (accumulates && disturbed[pass] && stillFrames[pass] > 0) startsAgain = graph.passes[pass].name;
     stillFrames[pass] = disturbed[pass] ? 0 : stillFrames[pass] + 1;
   }
@@ -145,9 +144,8 @@ void PipelineExecutor::State::setScene(const Scene& next) {
   const bool otherTraits = std::exchange(sceneTraits, traits) != traits;
   if (changed == Reads::nothing && !otherTraits) return;
   // A pass may have cached facts of the scene, such as its connectivity or its largest triangle.
-  replacePasses(bindPipeline(pipeline, techniques, options.parameters), [&](std::size_t pass, const Pass&) {
-    return reads(readsOf(graph.passes[pass]), changed);
-  });
+  replacePasses(bindPipeline(pipeline, techniques, options.parameters),
+                [&](std::size_t pass, const Pass&) { return reads(readsOf(graph.passes[pass]), changed); });
   emptyHistories();
   announced = announced | changed;
   if (otherObjects) last.reset();
