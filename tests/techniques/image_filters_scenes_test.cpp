@@ -150,7 +150,8 @@ TEST_CASE("table: errors, lag and flicker of light filtered over frames that mov
                 {noisy, own, ratioOf(ours[at], truth), published, ratioOf(printed[at], truth)});
       CAPTURE(row.name, frame);
       CHECK(own < noisy);
-      CHECK(own < 1.15 * published);
+      // Under a moving sun a fixed weight follows the light sooner.
+      CHECK(own < (std::string(row.name) == "moving_sun" ? 1.15 : 1.05) * published);
       // A lamp that has gone out stays longer in a history of fixed weight.
       if (std::string(row.name) == "switched_lamp" && frame > 2)
         CHECK(ratioOf(ours[at], truth) < ratioOf(printed[at], truth));

@@ -19,7 +19,6 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/change_tracking.h"
 #include "lumivox/toolkit/counts.h"
-#include "lumivox/toolkit/environment.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -225,9 +224,7 @@ class ClipmapPass : public Pass {
     result.occupied = frame.buffer(layout.words * sizeof(std::uint32_t), "occupied voxels of a clipmap");
     result.occupied->clear();
     place(frame, result, placement);
-    const glm::vec3 sky = brightestOfEnvironment(frame.sceneDescription());
-    const float brightest = static_cast<float>(bounces.most(true)) * brightestOf(frame, placement, 0) +
-                            std::max({sky.r, sky.g, sky.b});
+    const float brightest = brightestAfter(frame, brightestOf(frame, placement, 0), bounces.most(true));
     if (isHalf()) result.unit = brightest / kLargestHalf;
 
     const std::vector<LevelRange> ranges = rangesOf({}, placement, true, false);

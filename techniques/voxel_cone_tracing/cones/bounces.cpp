@@ -30,6 +30,12 @@ std::uint64_t reflectedBytes(const VoxelSums& sums) {
 
 }  // namespace
 
+float brightestAfter(PassContext& frame, float direct, int bounces) {
+  if (bounces == 1) return direct;
+  const glm::vec3 sky = brightestOfEnvironment(frame.sceneDescription());
+  return static_cast<float>(bounces) * direct + std::max({sky.r, sky.g, sky.b});
+}
+
 Bounces::Bounces(Pass* pass, const DirectLight& light, Within within)
     : light_(light),
       cones_(pass, "bounce_cones", 6, lumivox::within(1, 256), "cones for each side of a fragment"),

@@ -41,6 +41,10 @@ class LightBefore {
   In<Store> before_;
 };
 
+/// The most that a voxel can reflect after so many bounces, where the first brings at most `direct`,
+/// W/(sr m^2): cones of further ones gather at most what voxels of the one before hold, or the environment.
+float brightestAfter(PassContext& frame, float direct, int bounces);
+
 /// Bounces beyond the first; members of a pass.
 class Bounces {
  public:

@@ -17,7 +17,6 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/change_tracking.h"
-#include "lumivox/toolkit/environment.h"
 #include "lumivox/toolkit/media.h"
 #include "lumivox/toolkit/volume_room.h"
 
@@ -228,12 +227,9 @@ class Injection {
   bool storesMedia() const { return storeMedia_ && light_.media.present(); }
   /// The most that a voxel can reflect, and the unit of half floats.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
-    // A grid does not resolve anything nearer than half a voxel. Cones of further bounces gather at most what
-    // the voxels of the bounce before hold, or the environment.
-    float brightest =
-        static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
-    const glm::vec3 sky = brightestOfEnvironment(frame.sceneDescription());
-    if (bounces > 1) brightest += std::max({sky.r, sky.g, sky.b});
+    // A grid does not resolve anything nearer than half a voxel.
+    const float brightest =
+        brightestAfter(frame, light_.brightest(frame, 0.5f * fragments_->grid.voxelSize), bounces);
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }
